@@ -244,7 +244,7 @@ TEST(Lattice, FaceCentredPackingYieldsUnderConstantLateralStress) {
       d["materials"]["grain"]["friction_angle"] = std::to_string(angle) + " deg";
       d["time_step"]["value"] = dt;
       // By symmetry all bodies move with the mean flow; held ones do so in spite of rounding errors, which would grow.
-      d["engines"]["hold"] = {{"type", "hold"}, {"translation", true}, {"rotation", true}};
+      d["engines"]["hold"] = {{"type", "hold"}, {"translation", "xyz"}, {"rotation", "xyz"}};
       const double lateral = pressure(Trial(d).world()).x();
       d["domain"]["strain_rate"] = vector(-30 * squeeze / (steps * dt) * Vec3::UnitZ());
       d["domain"]["servo"] = {
