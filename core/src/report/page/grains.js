@@ -293,9 +293,9 @@ class GrainView {
     }
     return { from: Float32Array.from(from), to: Float32Array.from(to), width: Float32Array.from(width), alpha: Float32Array.from(alpha), tint: Uint8Array.from(tint) };
   }
-  /** The field of json.wall_fields that colours walls, if any, and its colour scale in SI. */
+  /** The field of json.wall_fields that colours walls, if any, and its colour scale in SI; of a run without a frame yet: null. */
   scaleOfWalls(frame) {
-    const { wallField } = this.state, field = this.json.wall_fields[wallField], limit = this.json.stages[frame.stage].wall_fields[wallField] || 1;
+    const { wallField } = this.state, field = this.json.wall_fields[wallField], limit = (frame && this.json.stages[frame.stage].wall_fields[wallField]) || 1;
     const [low, high] = withEnds([field?.signed ? -limit : 0, limit], field && endsOf(this.runs[this.state.run].scales, field.name), field?.signed);
     return { field, low, high, table: colourTables[field?.signed ? "diverging" : "sequential"] };
   }
