@@ -257,7 +257,6 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
   L largest(0.0);
   // Losses are subtracted: of a law without losses the compiler removes x − 0, but not x + 0.
   Loss<W> left{W(0.0), W(0.0), W(0.0)};
-  const auto one_kind = broadcast_pair<Law, L>(table[0]);
   const std::size_t first_row = batch.first_block * block_size;
   const std::uint32_t last_body = batch.last_body;
   const Ahead ahead(batch, fields);
@@ -297,7 +296,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       typename Law::template Pair<L> pair;
       const auto take_parameters = [&]() __attribute__((always_inline)) {
         if constexpr (OneKind) {
-          pair = one_kind;
+          pair = broadcast_pair<Law, L>(table[0]);  // memory operands; kept in registers, others would spill
         } else {
           const auto kind = [&](std::size_t k) {
             return batch.material != nullptr ? batch.material[ia[k]] * materials + batch.material[ib[k]] : 0;
