@@ -671,6 +671,25 @@ TEST(Descriptions, CheckWarnsWhereNothingMovesTheBodies) {
   EXPECT_THAT(check({R"(/stages/0/growth={"rate": 1})"}), none);
 }
 
+TEST(Descriptions, CheckReportsBodiesThatFallForEver) {
+  const OwnFolder folder;
+  auto cell = json::parse(two_grains);
+  cell["walls"] = json::object();
+  cell["domain"] = {{"low", {-0.1, -0.1, -0.1}}, {"high", {0.1, 0.1, 0.1}}, {"periodic", {true, true, true}}};
+  cell["engines"]["gravity"] = {{"type", "gravity"}};
+  folder.write("cell.json", cell.dump());
+  const auto check = [&](const std::string& set) {
+    const auto outcome = grit_in(folder.path(), {"check", "cell.json", "--set", set});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string warning = "\nwarning\n  /engines: gravity acts in a domain that is periodic along all axes";
+  EXPECT_THAT(check("/seed=2"), HasSubstr(warning));
+  EXPECT_THAT(check("/domain/periodic=[true, true, false]"), testing::Not(HasSubstr(warning)));
+  EXPECT_THAT(check(R"(/engines/gravity/acceleration=[0, 0, 0])"), testing::Not(HasSubstr(warning)));
+  EXPECT_THAT(check(R"(/engines/hold={"type": "hold", "translation": "z"})"), testing::Not(HasSubstr(warning)));
+}
+
 TEST(Descriptions, CheckReportsADepthWithMoreContactsThanScatterJustifies) {
   const OwnFolder folder;
   auto many = json::parse(two_grains);

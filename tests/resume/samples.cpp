@@ -251,6 +251,10 @@ TEST_F(Samples, SayWhichFramesThereAre) {
   refuses(
       {"/begin/at=frame", "/begin/frame=1", "/begin/time=10 ms"},
       AllOf(HasSubstr("/begin/time"), HasSubstr("found the number and the time of a frame; allowed is one of them")));
+  std::filesystem::remove(folder / "sample/frames/000001.h5");
+  refuses({"/begin/at=frame", "/begin/frame=1"}, HasSubstr("has no frame 1; its frames are 0, 2"));
+  const auto last = run("test.json", "last", {"/begin/at=frame"});
+  EXPECT_THAT(last.err, HasSubstr("from frame 2 ")) << "not the one before the gap";
   std::filesystem::remove_all(folder / "sample/frames");
   refuses({"/begin/at=frame"}, AllOf(HasSubstr("/begin/from"), HasSubstr("holds no frames")));
 }
@@ -274,13 +278,13 @@ TEST_F(Samples, MayChangeMaterialsWallsAndStages) {
 
 TEST_F(Samples, SayWhatCannotBeTakenOver) {
   prepare_sample();
-  refuses({"/begin/from=nothing"}, AllOf(HasSubstr("/begin/from"), HasSubstr("nothing: holds no final.h5")));
+  refuses({"/begin/from=nothing"}, AllOf(HasSubstr("/begin/from"), HasSubstr("nothing: is no folder; name the folder of results")));
   refuses({"/begin/at=checkpoint"}, HasSubstr("begin at its end with \"at\": \"end\""));
   refuses({"/contacts/type=linear-frictional", "/materials/sand/rolling_stiffness=null",
            "/materials/sand/rolling_limit=null"},
           AllOf(HasSubstr("/contacts"), HasSubstr("have the history \"rolling"), HasSubstr("\"springs\": \"drop\"")));
   refuses({R"(/domain={"low": [0, 0, 0], "high": [0.01, 0.01, 0.03], "periodic": [true, true, false]})"},
-          AllOf(HasSubstr("/domain/periodic"), HasSubstr("periodic along other axes")));
+          AllOf(HasSubstr("/domain/periodic"), HasSubstr("is periodic along ")));
   refuses({R"(/bodies/others={"type": "sphere", "material": "sand", "source": {"type": "sample"}})"},
           AllOf(HasSubstr("/bodies/others"), HasSubstr("has no group of this name; it has \"grains\"")));
   refuses(

@@ -17,6 +17,7 @@
 #include "input/places.hpp"
 #include "input/scene.hpp"
 #include "kernel/kernel.hpp"
+#include "lint/endless_fall.hpp"
 #include "lint/excess_depth.hpp"
 #include "lint/installed_studies.hpp"
 #include "lint/repeated_geometry.hpp"
@@ -144,8 +145,8 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     std::cout << ", at most " << cost(most) / 3600 << " h (" << duration_text(cost(most))
               << ") if stages run to their limits";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
-  if (const auto warning = unmoved_bodies(scene, kernel.world()))
-    std::cout << "\nwarning\n  " << warning->pointer << ": " << warning->why << '\n';
+  for (const auto& warning : {unmoved_bodies(scene, kernel.world()), endless_fall(scene)})
+    if (warning) std::cout << "\nwarning\n  " << warning->pointer << ": " << warning->why << '\n';
   auto idle = unused_settings(scene, components, kernel);
   std::ranges::move(unused_motions(scene), std::back_inserter(idle));
   const auto sets = options.list("set");

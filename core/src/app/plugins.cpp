@@ -21,8 +21,8 @@ ExitStatus plugins_command(const std::vector<std::string>& words) {
             << ")\n\n";
   ExitStatus status = ExitStatus::done;
   for (const Installed& one : registry->installed()) {
-    const std::string file = one.file.empty() ? "" : "\n" + std::string(38, ' ') + one.file.lexically_normal().string();
-    std::cout << std::left << std::setw(10) << one.kind << std::setw(20) << one.name << std::setw(8);
+    const std::string file = one.file.empty() ? "" : "\n" + std::string(40, ' ') + one.file.lexically_normal().string();
+    std::cout << std::left << std::setw(10) << one.kind << std::setw(22) << one.name << std::setw(8);
     try {
       const PluginInfo& info = registry->info(one.kind, one.name);
       std::cout << info.version << info.doc << file << std::endl;

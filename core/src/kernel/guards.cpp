@@ -61,7 +61,10 @@ void check_periods(const State& state) {
       fail(state, Guard::period, {"domain"},
            "/domain has a period of " + number(period) + " m along " + "xyz"[k] + ", below the minimum of " +
                number(shortest) + " m, twice the reach of the largest body",
-           "make the domain longer along this axis, use walls instead, or compress it less");
+           state.settings.cell_servo
+               ? "the servo of the cell has contracted it: its target may be beyond what the bodies can bear, or its "
+                 "max_strain_rate too large"
+               : "make the domain longer along this axis, use walls instead, or compress it less");
 }
 
 void check_growth(const State& state, double distance) {

@@ -9,6 +9,13 @@ std::string quoted_names(const std::set<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
+std::string axes_of(const std::array<bool, 3>& periodic) {
+  std::string text;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (periodic[k]) text += (text.empty() ? "" : ", ") + std::string(1, "xyz"[k]);
+  return text.empty() ? "no axis" : text;
+}
+
 }  // namespace
 
 std::string name_of_sample(const BeginDescription& begin) { return "the sample in " + begin.from; }
@@ -31,8 +38,8 @@ void check_groups(const SceneDescription& scene, const std::set<std::string>& ha
 void check_domain(const DomainDescription& now, const DomainDescription& before, const std::string& sample,
                   SampleFaults& faults) {
   if (now.periodic != before.periodic)
-    faults.push_back(
-        {{"domain", "periodic"}, "the domain of " + sample + " is periodic along other axes; use the same"});
+    faults.push_back({{"domain", "periodic"},
+                      "the domain of " + sample + " is periodic along " + axes_of(before.periodic) + "; use the same"});
   else if ((now.periodic[0] || now.periodic[1] || now.periodic[2]) &&
            (now.low != before.low || now.high != before.high))
     faults.push_back({{"domain"},

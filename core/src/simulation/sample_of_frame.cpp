@@ -1,6 +1,7 @@
 #include "simulation/sample_of_frame.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -25,6 +26,32 @@ struct ChosenFrame {
   double time;  // s
 };
 
+/// Numbers of the frames in a folder, ascending. Some may have been removed.
+std::vector<std::size_t> numbers_of_frames(const std::filesystem::path& folder) {
+  std::vector<std::size_t> numbers;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    const std::string stem = entry.path().stem().string();
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
+    if (error == std::errc() && end == stem.data() + stem.size() && entry.path().filename() == frame_name(number))
+      numbers.push_back(number);
+  }
+  std::ranges::sort(numbers);
+  return numbers;
+}
+
+/// Ascending numbers as "0 to 9, 20, 22 to 33".
+std::string ranges(const std::vector<std::size_t>& numbers) {
+  std::string text;
+  for (std::size_t first = 0, last = 0; first < numbers.size(); first = last + 1) {
+    for (last = first; last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1;) ++last;
+    text += (text.empty() ? "" : ", ") + std::to_string(numbers[first]);
+    if (last > first) text += " to " + std::to_string(numbers[last]);
+  }
+  return text;
+}
+
 ChosenFrame chosen_frame(const BeginDescription& begin) {
   const auto path = [&](std::size_t number) {
     return std::filesystem::path(begin.from) / "frames" / frame_name(number);
@@ -32,17 +59,20 @@ ChosenFrame chosen_frame(const BeginDescription& begin) {
   const auto chosen = [&](std::size_t number) -> ChosenFrame {
     return {number, path(number), time_of_frame(path(number))};
   };
-  std::size_t count = 0;
-  while (std::filesystem::exists(path(count))) ++count;
-  if (count == 0)
+  const std::vector<std::size_t> numbers = numbers_of_frames(std::filesystem::path(begin.from) / "frames");
+  if (numbers.empty())
     throw PlacedError({"begin", "from"},
                       begin.from + ": holds no frames; name the folder of results of a run with /output/frames");
-  if (begin.frame >= static_cast<std::int64_t>(count))
-    throw PlacedError({"begin", "frame"}, name_of_sample(begin) + " has no frame " + std::to_string(begin.frame) +
-                                              "; its frames are 0 to " + std::to_string(count - 1));
-  if (!begin.time) return chosen(begin.frame < 0 ? count - 1 : static_cast<std::size_t>(begin.frame));
-  ChosenFrame nearest = chosen(0);
-  for (std::size_t number = 1; number < count; ++number)
+  if (!begin.time && begin.frame < 0) return chosen(numbers.back());
+  if (!begin.time) {
+    const auto wanted = static_cast<std::size_t>(begin.frame);
+    if (!std::ranges::binary_search(numbers, wanted))
+      throw PlacedError({"begin", "frame"}, name_of_sample(begin) + " has no frame " + std::to_string(begin.frame) +
+                                                "; its frames are " + ranges(numbers));
+    return chosen(wanted);
+  }
+  ChosenFrame nearest = chosen(numbers.front());
+  for (const std::size_t number : numbers)
     if (const ChosenFrame one = chosen(number); std::abs(one.time - *begin.time) < std::abs(nearest.time - *begin.time))
       nearest = one;
   return nearest;

@@ -152,7 +152,11 @@ void FormulaProbe::Curve::declare(Parameters& parameters) {
   parameters.add("formula", formula)
       .required()
       .doc("expression in the syntax of muParser, in SI units; names: see the README");
-  parameters.add("unit", unit).doc("unit of the result, UDUNITS spelling; \"1\" is dimensionless");
+  parameters.add("unit", unit)
+      .doc(
+          "unit in which the formula gives its result, UDUNITS spelling; it is only written beside the numbers: "
+          "\"kPa\" needs a formula "
+          "that divides by 1000. \"1\" is dimensionless");
   parameters.add("doc", doc).doc("one line that describes the curve, with its sign convention; default: the formula");
 }
 

@@ -140,7 +140,8 @@ TEST(Rotations, RefusesAnAxisWithoutSides) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
-                 "across: found z, along which the domain is periodic; allowed is an axis that is not periodic");
+                 "across: found z, along which the domain is periodic; allowed is an axis that is not periodic, "
+                 "of which this domain has none: remove the probe");
   }
 }
 

@@ -37,8 +37,10 @@ class Profile {
   /// Throws ParameterError if the axis is periodic.
   void prepare(const World& world) const {
     if (world.cell().periodic[static_cast<std::size_t>(axis())])
-      throw ParameterError(
-          {{"across", across + ", along which the domain is periodic", "an axis that is not periodic"}});
+      throw ParameterError({{"across", across + ", along which the domain is periodic",
+                             world.cell().periodic_everywhere()
+                                 ? "an axis that is not periodic, of which this domain has none: remove the probe"
+                                 : "an axis that is not periodic"}});
   }
 
   struct Nodes {
