@@ -257,6 +257,7 @@ void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   const Cell& cell = world.cell();
   set_vector(file, "cell_low", cell.low), set_vector(file, "cell_high", cell.high);
   set_vector(file, "strain_rate", cell.strain_rate);
+  set_vector(file, "shear_rate", cell.shear_rate), set_vector(file, "tilt", cell.tilt);
   write_bodies(file.create_group("bodies"), world);
   if (!world.clumps().empty()) write_clumps(file.create_group("clumps"), world);
   write_contacts(file.create_group("contacts"), world);

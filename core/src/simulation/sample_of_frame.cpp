@@ -203,7 +203,8 @@ Prepared sample_of_frame(const LiveScene& live, const Registry& registry, StateR
   check_domain(scene.domain, live_before.now().domain, sample, faults);
   if (!faults.empty()) throw PlacedError(std::move(faults));
 
-  const Cell cell{frame.cell_low, frame.cell_high, live_before.now().domain.periodic, frame.strain_rate};
+  Cell cell{frame.cell_low, frame.cell_high, live_before.now().domain.periodic, frame.strain_rate};
+  cell.shear_rate = frame.shear_rate, cell.tilt = frame.tilt;
   Prepared prepared(FrameBodies(live, frame, sample).make(state),
                     {DeformingCell(cell), walls_of(frame, live_before), {}, {}});
   prepared.sample->walls.drop(walls_with_other_geometry(scene, live_before.now()));

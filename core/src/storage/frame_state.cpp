@@ -96,7 +96,7 @@ void set_wall(hdf5::Object& object, const FrameWall& wall) {
 
 FrameState read_frame_state(const std::filesystem::path& path) try {
   const hdf5::File file(path, hdf5::Mode::read);
-  if (!file.has_attribute("strain_rate_x"))
+  if (!file.has_attribute("tilt_x"))
     throw FileError(path.string() +
                     ": is of an earlier version, whose frames hold neither poses of walls nor the cell; run the sample "
                     "again");
@@ -104,6 +104,7 @@ FrameState read_frame_state(const std::filesystem::path& path) try {
   frame.stage = file.text("stage");
   frame.cell_low = vector_of(file, "cell_low"), frame.cell_high = vector_of(file, "cell_high");
   frame.strain_rate = vector_of(file, "strain_rate");
+  frame.shear_rate = vector_of(file, "shear_rate"), frame.tilt = vector_of(file, "tilt");
   read_bodies(file.group("bodies"), frame);
   if (file.has("clumps")) read_clumps(file.group("clumps"), frame);
   const auto walls = file.group("walls");

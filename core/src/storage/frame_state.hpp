@@ -46,6 +46,7 @@ struct FrameClump {
 struct FrameState {
   std::string stage;
   Vec3 cell_low, cell_high, strain_rate;  ///< infinite bounds along open sides
+  Vec3 shear_rate, tilt;                  ///< see Cell
   std::vector<std::string> groups;        ///< ascending
   std::vector<FrameBody> bodies;          ///< ascending ids
   std::vector<FrameClump> clumps;         ///< ascending ids
