@@ -209,6 +209,12 @@ struct AFieldNeedsNoFeature : Right {
       {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .needed_by = 2}};
 };
 
+// error: an entry of traits.prerequisites has a bit for which traits.features has no name
+struct APrerequisiteIsNotAFeature : RightInAllParts {
+  static constexpr LawTraits traits{
+      .single_precision = true, .losses = true, .features = {"shear"}, .prerequisites = {2}};
+};
+
 // error: a contact law has template <class L> struct Pair, whose members are all L or Vec<L>
 struct PairHasADouble : Right {
   template <class L>

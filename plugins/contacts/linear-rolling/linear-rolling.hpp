@@ -75,9 +75,11 @@ struct LinearRolling : LawBase {
     L damping;         ///< damping ratio
   };
 
-  static constexpr LawTraits traits{
-      .single_precision = true, .losses = true, .features = {"shear", "rolling", "twisting", "damping"}};
   static constexpr unsigned with_shear = 1, with_rolling = 2, with_twisting = 4, with_damping = 8;
+  static constexpr LawTraits traits{.single_precision = true,
+                                    .losses = true,
+                                    .features = {"shear", "rolling", "twisting", "damping"},
+                                    .prerequisites = {0, with_shear, with_rolling, 0}};
 
   template <class L>
   struct State {

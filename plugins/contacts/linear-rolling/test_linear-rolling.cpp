@@ -30,14 +30,25 @@ LawValues three(double rolling, double twisting, double restitution = 1) {
 std::vector<LawSetup> setups() {
   return {{"Sliding", three(0, 0), 3},
           {"Rolling", three(0.7, 0), 6},
-          {"Twisting", three(0, 0.5), 4},
+          {"Twisting", three(0, 0.5), 7},
           {"RollingTwisting", three(0.7, 0.5), 7},
           {"SlidingDamped", three(0, 0, 0.4), 3},
           {"RollingDamped", three(0.7, 0, 0.4), 6},
-          {"TwistingDamped", three(0, 0.5, 0.4), 4},
+          {"TwistingDamped", three(0, 0.5, 0.4), 7},
           {"RollingTwistingDamped", three(0.7, 0.5, 0.4), 7}};
 }
 INSTANTIATE_TEST_SUITE_P(LinearRolling, ContactLawContract, testing::ValuesIn(setups()), setup_name);
+
+TEST(LinearRolling, PrerequisitesAreEvaluatedToo) {
+  using testing::ElementsAre;
+  const auto parts = [](double friction, double rolling, double twisting) {
+    return make_law({{}, {material(1e6, friction, rolling, twisting)}, {}})->loop().parts;
+  };
+  EXPECT_THAT(parts(0, 0, 0), ElementsAre());
+  EXPECT_THAT(parts(20, 0, 0), ElementsAre("shear"));
+  EXPECT_THAT(parts(0, 0.5, 0), ElementsAre("shear", "rolling"));
+  EXPECT_THAT(parts(0, 0, 0.5), ElementsAre("shear", "rolling", "twisting"));
+}
 
 TEST(LinearRolling, StiffnessesInClosedForm) {
   const auto law = make_law({{}, {material(1e8, 18, 0.7, 0.2, 0.3), material(3e8, 30, 0.3, 0.6, 0.5)}, {}});

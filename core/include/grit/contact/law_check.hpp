@@ -61,6 +61,12 @@ consteval bool fields_name_features() {
 }
 
 template <class Law>
+consteval bool prerequisites_are_features() {
+  return std::ranges::all_of(Law::traits.prerequisites,
+                             [](unsigned bits) { return (bits >> detail::feature_count<Law>) == 0; });
+}
+
+template <class Law>
 concept mix = requires(const typename Law::Settings& settings, const typename Law::Material& material,
                        const typename Law::Interface& interface) {
   { Law::mix(settings, material, material, interface, true) } -> std::same_as<PairOf<Law, double>>;
@@ -131,7 +137,7 @@ consteval bool agrees_with_its_traits() {
   if (Law::traits.reach != has_reach<Law>) return false;
   if (Law::traits.reach && !(reaches<Law, double> && reaches<Law, Lane>)) return false;
   if (Law::traits.single_precision && !evaluates<Law, SingleLane>) return false;
-  return !named || features<Law>;
+  return prerequisites_are_features<Law>() && (!named || features<Law>);
 }
 
 }  // namespace law_part
@@ -204,6 +210,8 @@ consteval bool check_law() {
                   "the law has features() and does not announce them: name them in .features of its traits");
     static_assert(detail::feature_count<Law> == 0 || law_part::features<Law>,
                   "traits.features has names: the law has static unsigned features(const Pair<double>&)");
+    static_assert(law_part::prerequisites_are_features<Law>(),
+                  "an entry of traits.prerequisites has a bit for which traits.features has no name");
     static_assert(!Law::traits.single_precision || law_part::evaluates<Law, SingleLane>,
                   "traits.single_precision is true: evaluate() must take lanes of floats");
   }

@@ -118,8 +118,9 @@ class LawPlugin final : public ContactLaw {
   template <unsigned F = 0, class Run>
   void with_features(Run run) const {
     if constexpr (F < (1u << detail::feature_count<Law>)) {
-      if (F == features_) run.template operator()<F>();
-      else with_features<F + 1>(run);
+      if constexpr (F == detail::with_prerequisites<Law>(F))
+        if (F == features_) return run.template operator()<F>();
+      with_features<F + 1>(run);
     }
   }
   template <class L>
@@ -143,7 +144,7 @@ class LawPlugin final : public ContactLaw {
   }
 
   static unsigned features_of([[maybe_unused]] const Pair& pair) {
-    if constexpr (detail::feature_count<Law> != 0) return Law::features(pair);
+    if constexpr (detail::feature_count<Law> != 0) return detail::with_prerequisites<Law>(Law::features(pair));
     else return 0;
   }
   bool keeps(std::size_t field) const { return (detail::fields_used<Law>(features_) >> field & 1) != 0; }

@@ -23,8 +23,10 @@ struct LawTraits {
   /// Bodies interact before their surfaces touch, or after: the law has reach(). Its overlaps may then be negative.
   bool reach = false;
   /// Names of features that are evaluated only where needed, in the order of their bits; the law then has features().
-  /// The loop is compiled once for each combination.
+  /// The loop is compiled once for each combination that `prerequisites` leaves.
   const char* features[4] = {};
+  /// For each feature, bits of others that are evaluated with it. Each one keeps combinations from being compiled.
+  unsigned prerequisites[4] = {};
 };
 
 /// LawField::needed_by of a field that every combination of features needs.
@@ -45,6 +47,17 @@ namespace detail {
 template <class Law>
 inline constexpr unsigned feature_count = static_cast<unsigned>(
     std::ranges::count_if(Law::traits.features, [](const char* name) { return name != nullptr; }));
+
+/// `features` and their prerequisites.
+template <class Law>
+constexpr unsigned with_prerequisites(unsigned features) {
+  for (unsigned before = ~features; before != features;) {
+    before = features;
+    for (unsigned bit = 0; bit < feature_count<Law>; ++bit)
+      if ((features >> bit & 1) != 0) features |= Law::traits.prerequisites[bit];
+  }
+  return features;
+}
 
 /// The members of State that `features` need, one bit per number.
 template <class Law>
