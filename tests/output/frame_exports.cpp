@@ -114,6 +114,36 @@ TEST(FrameExports, DumpsHaveABox) {
   EXPECT_THAT(lammps_dump(NumberedWorld(), {}), HasSubstr("ss ss ss\n0 1\n0 1\n0 1\n")) << "without bodies";
 }
 
+TEST(FrameExports, DumpsOfSkewedCellsAreTriclinic) {
+  NumberedWorld world;
+  world.add(1, {0.25, 0.5, 4}, 0.25);
+  world.add(2, {1, 0.25, 6}, 0.5);
+  world.make_periodic({0, 0, 0}, {2, 4, 8});
+  world.box.tilt = {-0.5, 0.75, 1};
+  // The bounds enclose the cell, whose corners are at sums of (2, 0, 0), (-0.5, 4, 0) and (0.75, 1, 8). The image of
+  // body 1 in it is one period further along x, that of body 2 along y.
+  const std::string dump = lammps_dump(world, {});
+  EXPECT_EQ(dump,
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS xy xz yz pp pp pp\n"
+            "-0.5 2.75 -0.5\n0 5 0.75\n0 8 1\n"
+            "ITEM: ATOMS id type x y z radius vx vy vz omegax omegay omegaz\n"
+            "1 1 2.25 0.5 4 0.25 1 1.25 1.5 -1 2 3\n2 1 0.5 4.25 6 0.5 2 2.25 2.5 -2 4 6\n");
+  const Folder folder;
+  std::ofstream(folder / "skewed.dump") << dump;
+  const auto bodies = read_dump(folder / "skewed.dump");
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_EQ(xyz(bodies[1].sphere), Vec3(0.5, 4.25, 6));
+  EXPECT_EQ(bodies[1].velocity, Vec3(2, 2.25, 2.5));
+
+  world.box.tilt = {0.25, -0.75, -1};
+  EXPECT_THAT(lammps_dump(world, {}), HasSubstr("\n-0.75 2.25 0.25\n-1 4 -0.75\n0 8 -1\n"));
+  world.box.tilt = Vec3::Zero(), world.box.shear_rate = {1, 0, 0};
+  EXPECT_THAT(lammps_dump(world, {}), HasSubstr("xy xz yz pp pp pp\n0 2 0\n0 4 0\n0 8 0\n")) << "will be skewed";
+  world.box = {{0, 0, -std::numeric_limits<double>::infinity()}, {2, 4, 9}, {true, true, false}};
+  world.box.tilt = {0.5, 0, 0};
+  EXPECT_THAT(lammps_dump(world, {}), HasSubstr("xy xz yz pp pp sf\n0 2.5 0.5\n0 4 0\n3.75 9 0\n")) << "open along z";
+}
+
 TEST(FrameExports, VtkHasTheGrains) {
   const ptree xml = parsed(vtk_grains(GroupedWorld(), lid));
   EXPECT_EQ(xml.get<std::string>("VTKFile.<xmlattr>.type"), "PolyData");

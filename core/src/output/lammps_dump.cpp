@@ -6,15 +6,18 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "output/body_columns.hpp"
 
 namespace grit {
 namespace {
 
-/// Bounds and kinds of the six sides: p periodic, f fixed, s where the box encloses the bodies.
+/// Bounds and kinds of the six sides: p periodic, f fixed, s where the box encloses the bodies. Of a skewed cell LAMMPS
+/// gives the bounds of the box that encloses it, each with an offset of its images.
 std::string box(const World& world) {
   const Cell& cell = world.cell();
+  const Vec3& tilt = cell.tilt;
   std::string kinds, bounds;
   for (int axis = 0; axis < 3; ++axis) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -29,9 +32,29 @@ std::string box(const World& world) {
     kinds += ' ';
     kinds += side(cell.low[axis], low);
     kinds += side(cell.high[axis], high);
-    bounds += fmt::format("{} {}\n", low, high);
+    if (!cell.skewed()) {
+      bounds += fmt::format("{} {}\n", low, high);
+      continue;
+    }
+    const auto [least, most] = axis == 0   ? std::minmax({0.0, tilt[0], tilt[1], tilt[0] + tilt[1]})
+                               : axis == 1 ? std::minmax({0.0, tilt[2]})
+                                           : std::pair(0.0, 0.0);
+    bounds += fmt::format("{} {} {}\n", low + least, high + most, tilt[axis]);
   }
-  return "ITEM: BOX BOUNDS" + kinds + '\n' + bounds;
+  return std::string("ITEM: BOX BOUNDS") + (cell.skewed() ? " xy xz yz" : "") + kinds + '\n' + bounds;
+}
+
+/// A centre moved by whole periods into the cell of LAMMPS, whose edges from its lower corner are the periods.
+Vec3 in_box(const Cell& cell, const Vec3& centre) {
+  if (!cell.skewed()) return cell.inside(centre);
+  Vec3 whole = Vec3::Zero(), rest = centre - cell.low;
+  for (int axis = 2; axis >= 0; --axis) {
+    if (!cell.periodic[static_cast<std::size_t>(axis)]) continue;
+    const Vec3 period = cell.period(axis);
+    const double periods = rest[axis] / period[axis];
+    whole += std::floor(periods) * period, rest -= periods * period;
+  }
+  return centre - whole;
 }
 
 }  // namespace
@@ -44,10 +67,10 @@ std::string lammps_dump(const World& world, std::span<const WallShape>) {
   text += box(world);
   text += "ITEM: ATOMS id type x y z radius vx vy vz omegax omegay omegaz\n";
   for (const std::uint32_t i : order) {
-    const Row &x = world.positions()[i], &v = world.velocities()[i], &w = world.spins()[i];
+    const Row &v = world.velocities()[i], &w = world.spins()[i];
+    const Vec3 x = in_box(cell, xyz(world.positions()[i]));
     fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {} {} {} {} {} {} {}\n", world.ids()[i],
-                   groups.of_bodies[i] + 1, cell.inside(x.x, 0), cell.inside(x.y, 1), cell.inside(x.z, 2), x.w, v.x,
-                   v.y, v.z, w.x, w.y, w.z);
+                   groups.of_bodies[i] + 1, x.x(), x.y(), x.z(), world.positions()[i].w, v.x, v.y, v.z, w.x, w.y, w.z);
   }
   return text;
 }
