@@ -74,6 +74,29 @@ constexpr auto stir_on = R"({
 }
 )";
 
+/// Grains in a periodic cell that shears and shrinks.
+constexpr auto shear = R"({
+  "title": "simple shear of a periodic cell",
+  "contacts": {"type": "linear-rolling"},
+  "materials": {"sand": {"density": 2600, "contact_modulus": "10 MPa", "friction_angle": "30 deg"}},
+  "domain": {"low": [0, 0, 0], "high": ["10 mm", "10 mm", "10 mm"], "periodic": [true, true, true],
+             "shear_rate": {"xy": 20, "yz": -10}, "strain_rate": [-4, -4, -4]},
+  "bodies": {"grains": {"type": "sphere", "material": "sand", "source": {
+    "type": "cloud", "low": [0, 0, 0], "high": ["10 mm", "10 mm", "10 mm"], "count": 55,
+    "sizes": {"type": "uniform", "smallest": "2 mm", "largest": "2.5 mm"}}}},
+  "stages": [{"name": "shear", "until": {"type": "time", "value": "40 ms"}, "limit": "1 s"}],
+  "output": {"frames": {"every_time": "10 ms"}}
+}
+)";
+constexpr auto shear_on = R"({
+  "extends": "shear.json",
+  "begin": {"from": "sheared", "at": "frame", "frame": 4},
+  "bodies": {"grains": {"source": {"type": "sample", "low": null, "high": null, "count": null, "sizes": null}}},
+  "stages": [{"name": "on", "until": {"type": "time", "value": "4 ms"}, "limit": "1 s"}],
+  "output": {"frames": {"every_time": "4 ms"}}
+}
+)";
+
 class Samples : public testing::Test {
  protected:
   Samples() { folder.write("prepare.json", prepare), folder.write("test.json", go_on); }
@@ -241,6 +264,61 @@ TEST_F(Samples, FramesHoldClumpsWallsAndTheCell) {
           AllOf(HasSubstr("/bodies/rods"), HasSubstr("has clumps of 2 spheres, here it has others")), "on.json");
 }
 
+TEST_F(Samples, FramesHoldTheTiltOfACellThatShears) {
+  folder.write("shear.json", shear), folder.write("on.json", shear_on);
+  const auto sheared = run("shear.json", "sheared");
+  ASSERT_EQ(sheared.status, 0) << sheared.err;
+  const auto on = run("on.json", "on");
+  ASSERT_EQ(on.status, 0) << on.err;
+  const auto path_before = folder / "sheared/frames/000004.h5", path_after = folder / "on/frames/000000.h5";
+  const FrameState before = read_frame_state(path_before), after = read_frame_state(path_after);
+  ASSERT_LT(before.tilt.x(), -1e-3) << "after the tilt of 8 mm was reduced by a period";
+  ASSERT_LT(before.tilt.y(), -1e-3) << "shear along both others moves images along this";
+  ASSERT_LT(before.tilt.z(), -3e-3);
+  EXPECT_EQ(after.tilt, before.tilt);
+  EXPECT_EQ(after.shear_rate, before.shear_rate);
+  EXPECT_EQ(after.strain_rate, before.strain_rate);
+  EXPECT_EQ(after.cell_low, before.cell_low);
+  EXPECT_EQ(after.cell_high, before.cell_high);
+
+  Cell cell{before.cell_low, before.cell_high, {true, true, true}};
+  cell.tilt = before.tilt;
+  const Vec3 middle = 0.5 * (cell.low + cell.high);
+  ASSERT_EQ(after.bodies.size(), 55u);
+  ASSERT_EQ(before.bodies.size(), 55u);
+  std::size_t unmoved = 0;
+  for (std::size_t i = 0; i < 55; ++i) {
+    const FrameBody &now = after.bodies[i], &then = before.bodies[i];
+    EXPECT_EQ(now.id, then.id);
+    EXPECT_EQ(now.radius, then.radius);
+    EXPECT_EQ(now.spin, then.spin);
+    // A neighbour search may have moved it into the cell, by whole periods of the skewed cell.
+    EXPECT_LE((cell.inside(middle + now.position - then.position) - middle).norm(), 1e-14) << i;  // m
+    if (now.position != then.position) continue;
+    EXPECT_EQ(now.velocity, then.velocity);
+    ++unmoved;
+  }
+  EXPECT_GT(unmoved, 40u);
+
+  // Contacts across the skewed sides are the same, in another order.
+  const auto forces = [](const std::filesystem::path& path) {
+    std::vector<double> all = read_frame(path).normal_force;
+    std::ranges::sort(all);
+    return all;
+  };
+  ASSERT_GT(forces(path_before).size(), 60u);
+  EXPECT_THAT(forces(path_after),
+              testing::Pointwise(testing::DoubleNear(1e-9), forces(path_before)));  // N, of up to 0.6
+
+  // The shear goes on: tilts over side lengths grow by the shear, whatever the isotropic strain.
+  const auto path_end = folder / "on/frames/000001.h5";
+  const FrameState end = read_frame_state(path_end);
+  const double time = time_of_frame(path_end), length = end.cell_high.x() - end.cell_low.x(),
+               length_before = before.cell_high.x() - before.cell_low.x();
+  EXPECT_NEAR(end.tilt.x() / length - before.tilt.x() / length_before, 20 * time, 1e-4);
+  EXPECT_NEAR(end.tilt.z() / length - before.tilt.z() / length_before, -10 * time, 1e-4);
+}
+
 TEST_F(Samples, SayWhichFramesThereAre) {
   ASSERT_EQ(
       run("prepare.json", "sample", {R"(/output={"frames": {"every_time": "10 ms"}})", "/stages/0/limit=25 ms"}).status,
@@ -278,7 +356,8 @@ TEST_F(Samples, MayChangeMaterialsWallsAndStages) {
 
 TEST_F(Samples, SayWhatCannotBeTakenOver) {
   prepare_sample();
-  refuses({"/begin/from=nothing"}, AllOf(HasSubstr("/begin/from"), HasSubstr("nothing: is no folder; name the folder of results")));
+  refuses({"/begin/from=nothing"},
+          AllOf(HasSubstr("/begin/from"), HasSubstr("nothing: is no folder; name the folder of results")));
   refuses({"/begin/at=checkpoint"}, HasSubstr("begin at its end with \"at\": \"end\""));
   refuses({"/contacts/type=linear-frictional", "/materials/sand/rolling_stiffness=null",
            "/materials/sand/rolling_limit=null"},
