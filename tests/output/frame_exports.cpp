@@ -176,40 +176,80 @@ TEST(FrameExports, VtkHasTheWallsWhereTheyAre) {
   EXPECT_THAT(numbers<std::int64_t>(piece.get_child("Polys"), "offsets"), ElementsAre(3));
 }
 
-TEST(FrameExports, ContinueFromACount) {
-  const Folder folder;
-  const std::vector<std::string> formats{"vtk", "lammps-dump"};
-  GroupedWorld world;
-  const auto write = [&](Frames& frames, std::initializer_list<double> times) {
+struct FrameExportsOfResumedRuns : testing::Test {
+  void write(Frames& frames, std::initializer_list<double> times) {
     for (const double time : times) world.now = time, frames.write(world, {});
-  };
-  {
-    Frames frames(folder.path(), lid, 0, formats);
-    write(frames, {0, 1, 2, 3});
   }
-  std::ofstream(folder / "frames/mine.txt") << "mine";
-  Frames frames(folder.path(), lid, 2, formats);
-  const auto times = [&](const char* name) {
+  bool has(const std::string& file) const { return std::filesystem::exists(folder / file); }
+  /// Those of a collection, whose files exist.
+  std::vector<double> times(const char* name) const {
     ptree xml;
     read_xml((folder / name).string(), xml);
     std::vector<double> all;
     for (const auto& [tag, one] : xml.get_child("VTKFile.Collection")) {
       if (tag != "DataSet") continue;
-      EXPECT_TRUE(std::filesystem::exists(folder / one.get<std::string>("<xmlattr>.file")));
+      EXPECT_TRUE(has(one.get<std::string>("<xmlattr>.file")));
       all.push_back(one.get<double>("<xmlattr>.timestep"));
     }
     return all;
-  };
-  for (const char* end : {".h5", "_grains.vtp", "_walls.vtp", ".dump"}) {
-    EXPECT_TRUE(std::filesystem::exists(folder / ("frames/000001" + std::string(end)))) << end;
-    EXPECT_FALSE(std::filesystem::exists(folder / ("frames/000002" + std::string(end)))) << end;
-    EXPECT_FALSE(std::filesystem::exists(folder / ("frames/000003" + std::string(end)))) << end;
   }
-  EXPECT_TRUE(std::filesystem::exists(folder / "frames/mine.txt"));
+  /// Whether there is a frame of this number, in all formats or in none.
+  bool has_frame(const std::string& number) const {
+    for (const char* end : {"_grains.vtp", "_walls.vtp", ".dump"})
+      EXPECT_EQ(has("frames/" + number + end), has("frames/" + number + ".h5")) << number << end;
+    return has("frames/" + number + ".h5");
+  }
+
+  const Folder folder;
+  const std::vector<std::string> all{"vtk", "lammps-dump"};
+  GroupedWorld world;
+};
+
+TEST_F(FrameExportsOfResumedRuns, ContinueFromACount) {
+  {
+    Frames frames(folder.path(), lid, 0, all);
+    write(frames, {0, 1, 2, 3});
+  }
+  std::ofstream(folder / "frames/mine.txt") << "mine";
+  std::ofstream(folder / "frames/000003.txt") << "mine";
+  Frames frames(folder.path(), lid, 2, all);
+  EXPECT_TRUE(has_frame("000001"));
+  EXPECT_FALSE(has_frame("000002"));
+  EXPECT_FALSE(has_frame("000003"));
+  EXPECT_TRUE(has("frames/mine.txt"));
+  EXPECT_TRUE(has("frames/000003.txt"));
   EXPECT_THAT(times("grains.pvd"), ElementsAre(0, 1));
   write(frames, {5});
   EXPECT_THAT(times("grains.pvd"), ElementsAre(0, 1, 5));
   EXPECT_THAT(times("walls.pvd"), ElementsAre(0, 1, 5));
+}
+
+TEST_F(FrameExportsOfResumedRuns, RemoveLaterFilesOfFormatsThatWereDropped) {
+  {
+    Frames frames(folder.path(), lid, 0, all);
+    write(frames, {0, 1, 2, 3, 4});
+  }
+  std::filesystem::remove(folder / "frames/000002.dump");  // those behind a gap are found too
+  Frames frames(folder.path(), lid, 2);
+  EXPECT_TRUE(has_frame("000001"));
+  for (const char* later : {"000002", "000003", "000004"}) EXPECT_FALSE(has_frame(later));
+  EXPECT_THAT(times("grains.pvd"), ElementsAre(0, 1));
+  EXPECT_THAT(times("walls.pvd"), ElementsAre(0, 1));
+  write(frames, {5});
+  EXPECT_TRUE(has("frames/000002.h5"));
+  EXPECT_FALSE(has("frames/000002.dump"));
+  EXPECT_THAT(times("grains.pvd"), ElementsAre(0, 1));
+}
+
+TEST_F(FrameExportsOfResumedRuns, MayAddAFormat) {
+  {
+    Frames frames(folder.path(), lid);
+    write(frames, {0, 1});
+  }
+  const std::vector<std::string> vtk{"vtk"};
+  Frames frames(folder.path(), lid, 1, vtk);
+  write(frames, {5});
+  EXPECT_THAT(times("grains.pvd"), ElementsAre(5)) << "the frame before has no such file";
 }
 
 }  // namespace

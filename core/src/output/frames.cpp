@@ -212,13 +212,28 @@ Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> wall
 
   for (std::size_t number = 0; number < kept; ++number)
     instants_.push_back(instant_of(hdf5::File(folder / frame_name(number), hdf5::Mode::read)));
-  const auto remove_later = [&](const char* end) {
-    for (std::size_t number = kept; std::filesystem::exists(folder / frame_name(number, end)); ++number)
-      std::filesystem::remove(folder / frame_name(number, end), error);
-  };
-  remove_later(".h5");
-  for (const FrameExport* one : exports_) remove_later(one->suffix);
+  remove_later();
   write_indices();
+  const auto is_written = [&](const FrameExport& one) { return std::ranges::find(exports_, &one) != exports_.end(); };
+  for (const FrameExport& one : frame_exports())
+    if (one.collection != nullptr && !is_written(one) && std::filesystem::exists(results_ / one.collection, error))
+      write_collection(one);
+}
+
+/// Those of a format that the description had before are removed too.
+void Frames::remove_later() const {
+  const auto is_later = [&](const std::string& name, const char* suffix) {
+    const auto number = frame_number(name, suffix);
+    return number && *number >= instants_.size();
+  };
+  std::vector<std::filesystem::path> later;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(results_ / "frames", error)) {
+    const std::string name = entry.path().filename().string();
+    const auto is_of = [&](const FrameExport& one) { return is_later(name, one.suffix); };
+    if (is_later(name, ".h5") || std::ranges::any_of(frame_exports(), is_of)) later.push_back(entry.path());
+  }
+  for (const auto& path : later) std::filesystem::remove(path, error);
 }
 
 Frames::Instant Frames::instant_of(const hdf5::File& file) {
@@ -275,13 +290,18 @@ void Frames::write(const World& world, std::span<const FieldGroup> fields) {
 
 void Frames::write_indices() const {
   write_xdmf();
-  for (const FrameExport* one : exports_) {
-    if (one->collection == nullptr) continue;
-    std::vector<TimedFile> files;
-    for (std::size_t number = 0; number < instants_.size(); ++number)
-      files.push_back({instants_[number].time, "frames/" + frame_name(number, one->suffix)});
-    write_atomically(results_ / one->collection, vtk_collection(files));
+  for (const FrameExport* one : exports_)
+    if (one->collection != nullptr) write_collection(*one);
+}
+
+/// Frames before a format was added have no file in it.
+void Frames::write_collection(const FrameExport& one) const {
+  std::vector<TimedFile> files;
+  for (std::size_t number = 0; number < instants_.size(); ++number) {
+    const std::string file = "frames/" + frame_name(number, one.suffix);
+    if (std::filesystem::exists(results_ / file)) files.push_back({instants_[number].time, file});
   }
+  write_atomically(results_ / one.collection, vtk_collection(files));
 }
 
 void Frames::write_xdmf() const {

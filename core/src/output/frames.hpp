@@ -19,7 +19,8 @@ struct FrameExport;
 /// A file appears under its name only when it is whole. All functions throw FileError.
 class Frames {
  public:
-  /// Keeps the first `kept` existing frames and removes later ones. `formats`: those of FrameExport.
+  /// Keeps the first `kept` existing frames and removes later ones, in all formats. `formats`: those of FrameExport, in
+  /// which frames are written.
   Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept = 0,
          std::span<const std::string> formats = {});
 
@@ -40,7 +41,9 @@ class Frames {
   };
   static Instant instant_of(const hdf5::File& file);
 
+  void remove_later() const;
   void write_indices() const;
+  void write_collection(const FrameExport& one) const;
   void write_xdmf() const;
 
   std::filesystem::path results_;

@@ -1,7 +1,6 @@
 #include "simulation/sample_of_frame.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -30,13 +29,8 @@ struct ChosenFrame {
 std::vector<std::size_t> numbers_of_frames(const std::filesystem::path& folder) {
   std::vector<std::size_t> numbers;
   std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
-    const std::string stem = entry.path().stem().string();
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
-    if (error == std::errc() && end == stem.data() + stem.size() && entry.path().filename() == frame_name(number))
-      numbers.push_back(number);
-  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+    if (const auto number = frame_number(entry.path().filename().string())) numbers.push_back(*number);
   std::ranges::sort(numbers);
   return numbers;
 }

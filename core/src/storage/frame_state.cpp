@@ -2,7 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <charconv>
 #include <stdexcept>
+#include <system_error>
 
 #include "grit/description.hpp"
 #include "grit/error.hpp"
@@ -76,6 +78,13 @@ FrameWall read_wall(const std::string& name, const hdf5::Object& object) {
 }  // namespace
 
 std::string frame_name(std::size_t number, const char* suffix) { return fmt::format("{:06}{}", number, suffix); }
+
+std::optional<std::size_t> frame_number(const std::string& file_name, const char* suffix) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(file_name.data(), file_name.data() + file_name.size(), number);
+  if (error != std::errc() || file_name != frame_name(number, suffix)) return std::nullopt;
+  return number;
+}
 
 void set_vector(hdf5::Object& object, const std::string& name, const Vec3& vector) {
   for (int axis = 0; axis < 3; ++axis) object.set_attribute(along(name, axis), vector[axis]);

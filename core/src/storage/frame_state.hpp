@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace grit {
 
 /// The name of a file of a frame: 000123.h5, with other suffixes for other formats.
 std::string frame_name(std::size_t number, const char* suffix = ".h5");
+/// Its number, if a file name is frame_name() with this suffix.
+std::optional<std::size_t> frame_number(const std::string& file_name, const char* suffix = ".h5");
 
 /// Attributes NAME_x, NAME_y and NAME_z.
 void set_vector(hdf5::Object& object, const std::string& name, const Vec3& vector);
