@@ -843,6 +843,37 @@ TEST(Descriptions, FilesThatCannotBeReadEndWithStatus5) {
   EXPECT_THAT(outcome.err, HasSubstr("directory.json: cannot be read: Is a directory"));
 }
 
+TEST(Descriptions, FilesThatTheyNameAreRefusedWithTheirKey) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto refused = [&](const std::string& set, const std::string& pointer, const std::string& file) {
+    for (const char* command : {"check", "run"}) {
+      const auto outcome = grit_in(folder.path(), {command, "two.json", "--set", set});
+      EXPECT_EQ(outcome.status, 2) << command << ' ' << set;
+      EXPECT_THAT(outcome.err,
+                  AllOf(HasSubstr("--set: " + pointer + ": "), HasSubstr(file),
+                        HasSubstr("cannot be read: No such file or directory"), HasSubstr("; allowed is ")))
+          << command;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "results")) << set;
+  };
+  const std::string group = R"(/bodies/more={"type": "sphere", "material": "sand", )";
+  refused(group + R"("source": {"type": "file", "path": "no.txt"}})", "/bodies/more/source/path", "no.txt");
+  refused(group + R"("stage": "part", "source": {"type": "file", "path": "no.txt"}})", "/bodies/more/source/path",
+          "no.txt");
+  refused(group + R"("source": {"type": "cloud", "count": 3, "sizes": {"type": "list", "diameters": [0.001]},
+                                "region": {"type": "mesh", "path": "no.stl", "scale": 1}}})",
+          "/bodies/more/source/region/path", "no.stl");
+  refused(R"(/bodies/more={"type": "clump", "material": "sand", "shape": {"type": "file", "path": "no.txt"},
+             "source": {"type": "list", "bodies": [{"position": [1, 1, 1], "radius": 0.001}]}})",
+          "/bodies/more/shape/path", "no.txt");
+  refused(R"(/walls={"chute": {"type": "mesh", "path": "no.stl", "scale": 1, "material": "sand"}})",
+          "/walls/chute/path", "no.stl");
+  refused(R"(/output/references={"lab": {"of": "packing/kinetic_energy",
+             "curve": {"file": "no.csv", "x": "time", "y": "energy"}}})",
+          "/output/references/lab/curve/file", "no.csv");
+}
+
 TEST(Check, ReportsTheRun) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);

@@ -175,8 +175,9 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
       {"type", "curve"}, {"of", "packing/kinetic_energy"}, {"curve", {{"file", "none.csv"}, {"x", "x"}, {"y", "y"}}}};
   folder.write("file.json", changed.dump());
   const auto file = grit({"study", "file.json"});
-  EXPECT_EQ(file.status, 5);
-  EXPECT_THAT(file.err, HasSubstr("none.csv: cannot be read"));
+  EXPECT_EQ(file.status, 2);
+  EXPECT_THAT(file.err, AllOf(HasSubstr("file.json:1: /metrics/energy/curve/file: "),
+                              HasSubstr("none.csv: cannot be read: No such file or directory; allowed is the path")));
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
   EXPECT_EQ(grit({"study"}).status, 1);
   for (const char* jobs : {"0", "-1", "2x"}) {

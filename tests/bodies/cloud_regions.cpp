@@ -272,11 +272,12 @@ TEST(CloudRegions, ReportMeshesThatAreNotClosed) {
   const StlFile open(stl_text(corners)), empty("solid\nendsolid\n");
   CloudSource source = cloud(1, 0.1);
   region_of<MeshRegion>(source) = {open.path(), 1, Vec3::Zero()};
-  EXPECT_THAT(message([&] { check_region(source); }),
-              testing::StartsWith("region: " + open.path() + ": found a surface that is not closed, with 3 edges "));
+  EXPECT_THAT(
+      message([&] { check_region(source); }),
+      testing::StartsWith("region/path: found " + open.path() + ": a surface that is not closed, with 3 edges "));
   region_of<MeshRegion>(source) = {empty.path(), 1, Vec3::Zero()};
   EXPECT_EQ(message([&] { check_region(source); }),
-            "region: " + empty.path() + ": found a file without facets; allowed is at least one facet");
+            "region/path: found " + empty.path() + ": a file without facets; allowed is at least one facet");
   region_of<MeshRegion>(source) = {"/nowhere/a.stl", 1, Vec3::Zero()};
   EXPECT_THAT(message([&] { check_region(source); }), HasSubstr("cannot be read: No such file"));
 }

@@ -27,6 +27,7 @@
 #include "lint/unused_scenario_parameters.hpp"
 #include "lint/unused_settings.hpp"
 #include "output/named_fields.hpp"
+#include "output/reference_curve.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"
 #include "simulation/expected_stages.hpp"
@@ -46,6 +47,7 @@ constexpr double dense_step_fraction = 0.6;
 
 void check_one(const std::string& file, const Scene& scene, const Options& options, const Registry& registry) {
   const SceneDescription& description = *scene.description;
+  check_references(description.output);
   const LiveScene live(scene);
   const Components& components = live.components();
   std::cout << file << ": " << description.title << "\n\ncomponents\n";

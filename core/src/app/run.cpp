@@ -142,8 +142,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     if (!quiet) std::cerr << line << std::endl;
   };
 
-  for (const auto& [name, reference] : description.output.references)
-    if (reference.curve) read_reference(*reference.curve);  // a fault in it is reported now
+  check_references(description.output);
   say(description.title.empty() ? job.file : job.file + ": " + description.title);
   RunFacts facts = facts_of(job, threads, command_line);
   std::optional<Checkpoint> checkpoint;

@@ -17,6 +17,7 @@
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
 #include "bodies/make_bodies.hpp"
+#include "description/placed_error.hpp"
 #include "format/duration.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
@@ -161,12 +162,17 @@ std::string one_of(const std::string& found, const std::vector<std::string>& nam
   return did_you_mean(found, names, fmt::format("allowed is one of {}", fmt::join(names, ", ")));
 }
 
-/// Checks probes and reference files of the metrics before any run. Throws DescriptionError, FileError.
+/// Checks probes and reference files of the metrics before any run. Throws DescriptionError.
 void check_metrics(const StudyDescription& study, const Document& written, const SceneDescription& scene) {
   std::vector<Problem> problems;
   const auto probes = std::views::keys(scene.probes);
   for (const auto& [name, metric] : study.metrics) {
-    if (metric.curve) read_reference(*metric.curve);
+    if (metric.curve) try {
+        read_reference(*metric.curve);
+      } catch (const FileError& error) {
+        problems.push_back(
+            written.problem(pointer_of(name, "curve/file"), missing_file_text(error, metric.curve->file)));
+      }
     for (const auto& [key, channel] : {std::pair("of", &metric.of), std::pair("against", &metric.against)}) {
       const std::string probe = channel->substr(0, channel->find('/'));
       if (probe.empty() || scene.probes.contains(probe)) continue;

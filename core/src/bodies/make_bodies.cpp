@@ -128,11 +128,26 @@ void check_inside(const Cell& cell, const Bodies& bodies) {
   if (!faults.empty()) throw PlacedError(std::move(faults));
 }
 
+/// Reads the file of a group before the run. If it cannot be read, that is a fault of the description; later it is one
+/// of the disk.
+template <class Read>
+auto read_at_start(const std::string& name, const BodiesDescription& group, const Read& read) {
+  try {
+    return read();
+  } catch (const FileError& error) {
+    const auto* file = std::get_if<FileSource>(&group.source.value());
+    if (file == nullptr) throw;
+    throw PlacedError({"bodies", name, "source", "path"}, missing_file_text(error, file->path));
+  }
+}
+
 /// Runs `work` for a group. Errors get the name of the group, except errors in files, which have a line.
 template <class Work>
 void for_group(const std::string& name, const Work& work) {
   try {
     work();
+  } catch (const ParameterError& error) {
+    throw PlacedError(placed(error, {"bodies", name, "source"}));
   } catch (const Error& error) {
     if (typeid(error) != typeid(Error)) throw;
     throw PlacedError({"bodies", name}, error.what());
@@ -196,7 +211,9 @@ Bodies make_bodies(const SceneDescription& scene, const Components& components, 
     if (group.is_from_sample()) continue;
     if (group.stage.empty()) {
       bodies.groups.push_back({name, bodies.ids_given});
-      for_group(name, [&] { add_group(group, GroupBuilder(scene, group, kind), cell, {}, random, bodies); });
+      read_at_start(name, group, [&] {
+        for_group(name, [&] { add_group(group, GroupBuilder(scene, group, kind), cell, {}, random, bodies); });
+      });
     } else {
       // Errors in files are reported now, not at the start of their stage.
       body_count(scene, name, kind);
@@ -233,7 +250,8 @@ Bodies smallest_bodies(const SceneDescription& scene, const Components& componen
   for (const std::string& name : groups) {
     const BodiesDescription& group = scene.bodies.at(name);
     const GroupBuilder builder(scene, group, components.body_kinds.at(name));
-    if (const double radius = smallest_radius(group, builder.shape_diameter()); std::isfinite(radius))
+    const double radius = read_at_start(name, group, [&] { return smallest_radius(group, builder.shape_diameter()); });
+    if (std::isfinite(radius))
       builder.add(bodies, Vec3::Zero(), radius, Eigen::Quaterniond::Identity(), Vec3::Zero(), Vec3::Zero());
   }
   bodies.finish({});
@@ -252,7 +270,8 @@ std::size_t body_count(const SceneDescription& scene, const std::string& name,
     return spheres * static_cast<std::size_t>(cloud->count);
   if (const auto* lattice = std::get_if<LatticeSource>(&group.source.value()))
     return spheres * count_of_lattice(*lattice, spanned_axes(*lattice, scene.domain));
-  return spheres * read_bodies(std::get<FileSource>(group.source.value())).size();
+  const auto count = [&] { return read_bodies(std::get<FileSource>(group.source.value())).size(); };
+  return spheres * read_at_start(name, group, count);
 }
 
 }  // namespace grit

@@ -29,7 +29,7 @@ std::size_t materials_of_bodies(const SceneDescription& scene);
 std::vector<std::string> materials_in_use(const SceneDescription& scene, std::vector<std::string> names);
 
 /// The bodies of all groups at the start, in the order of group names, with consecutive ids. Throws as the sources of
-/// grains do, also for files of later groups.
+/// grains do, PlacedError for files that cannot be read, also those of later groups.
 Bodies make_bodies(const SceneDescription& scene, const Components& components, StateRequest state);
 
 /// New bodies at the start of a stage, group after group; ids from 0.
@@ -48,12 +48,13 @@ struct Newcomers {
 Newcomers make_newcomers(const SceneDescription& scene, const Components& components, const std::string& stage,
                          const Cell& cell, std::span<const Row> there, StateRequest state);
 
-/// The smallest body of each of these groups, for estimates before they appear. Throws if a file cannot be read.
+/// The smallest body of each of these groups, for estimates before they appear. Throws PlacedError if a file cannot
+/// be read.
 Bodies smallest_bodies(const SceneDescription& scene, const Components& components,
                        const std::vector<std::string>& groups);
 
 /// Number of bodies of a group; each sphere of a clump is one. For a stream those that its limits allow, or 0. Throws
-/// if its file cannot be read.
+/// PlacedError if its file cannot be read.
 std::size_t body_count(const SceneDescription& scene, const std::string& group,
                        const std::shared_ptr<const BodyKind>& kind);
 

@@ -35,6 +35,10 @@ int crossing(double y, double z, const Vec3& from, const Vec3& to) {
   return there > z ? (up ? 1 : -1) : 0;
 }
 
+[[noreturn]] void refuse(const std::string& path, const std::string& found, const std::string& allowed) {
+  throw ParameterError({{"region/path", found.starts_with(path) ? found : path + ": " + found, allowed}});
+}
+
 }  // namespace
 
 double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corners) {
@@ -51,8 +55,7 @@ double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corner
 
 MeshInterior::MeshInterior(const MeshRegion& region) {
   const Stl stl = read_stl(region.path);
-  if (!stl.defects.empty())
-    throw Error("region: " + region.path + ": " + fault_text(stl.defects.front().found, stl.defects.front().allowed));
+  if (!stl.defects.empty()) refuse(region.path, stl.defects.front().found, stl.defects.front().allowed);
   for (const Stl::Facet& facet : stl.facets) triangles_.push_back(facet.corners);
   check_closed(region.path);
   bounds_ = {Vec3::Constant(std::numeric_limits<double>::infinity()),
@@ -64,7 +67,7 @@ MeshInterior::MeshInterior(const MeshRegion& region) {
     }
   const Vec3 middle = 0.5 * (bounds_.low + bounds_.high);
   for (const auto& [a, b, c] : triangles_) volume_ += (a - middle).dot((b - middle).cross(c - middle)) / 6;
-  if (!(std::abs(volume_) > 0)) throw Error("region: " + region.path + ": found a surface without an inside");
+  if (!(std::abs(volume_) > 0)) refuse(region.path, "a surface without an inside", "a surface around a volume");
   volume_ = std::abs(volume_);  // of facets in either order
   sort_into_columns();
 }
@@ -80,9 +83,10 @@ void MeshInterior::check_closed(const std::string& path) const {
     }
   const auto free = std::ranges::count_if(edges, [](const auto& edge) { return edge.second != 0; });
   if (free > 0)
-    throw Error("region: " + path + ": found a surface that is not closed, with " + std::to_string(free) +
-                " edges of which the facets on both sides are not there or differ in their corners or their order; "
-                "allowed is a closed surface; export the file again");
+    refuse(path,
+           "a surface that is not closed, with " + std::to_string(free) +
+               " edges of which the facets on both sides are not there or differ in their corners or their order",
+           "a closed surface; export the file again");
 }
 
 void MeshInterior::sort_into_columns() {

@@ -14,8 +14,7 @@ namespace grit {
 
 class MeshInterior {
  public:
-  /// Reads the file. Throws grit::Error, beginning with its path, for a file at fault and for a surface that is not
-  /// closed.
+  /// Reads the file. Throws ParameterError at region/path for a file at fault and for a surface that is not closed.
   explicit MeshInterior(const MeshRegion& region);
 
   Region bounds() const { return bounds_; }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -43,6 +45,13 @@ inline std::vector<PlacedError::Fault> placed(const ParameterError& error, const
     all.push_back({std::move(path), fault.message()});
   }
   return all;
+}
+
+/// The message for a file that the description names and that cannot be read.
+inline std::string missing_file_text(const FileError& error, const std::string& path) {
+  std::error_code none;
+  const bool exists = std::filesystem::exists(path, none);
+  return error.what() + std::string(exists ? "" : "; allowed is the path of a file, relative to the description");
 }
 
 }  // namespace grit

@@ -203,7 +203,7 @@ void Kernel::admit(const SceneDescription& scene, const Components& components) 
   } catch (const FileError&) {
     throw;
   } catch (const PlacedError& error) {
-    fail(state_, Guard::arrival, error.keys(), "group \"" + error.keys().back() + "\": " + error.what(), "");
+    fail(state_, Guard::arrival, error.keys(), "group \"" + error.keys().at(1) + "\": " + error.what(), "");
   }
   if (arriving.bodies.count() == 0) return;
   match_velocities(arriving.bodies, state_);

@@ -1,7 +1,9 @@
 #include "output/reference_curve.hpp"
 
 #include <cmath>
+#include <utility>
 
+#include "description/placed_error.hpp"
 #include "format/csv.hpp"
 #include "grit/error.hpp"
 
@@ -17,6 +19,17 @@ ReferencePoints read_reference(const ReferenceCurve& curve) {
   }
   if (points.x.size() < 2) throw FileError(curve.file + ": fewer than two points with rising " + curve.x);
   return points;
+}
+
+void check_references(const OutputDescription& output) {
+  std::vector<PlacedError::Fault> faults;
+  for (const auto& [name, reference] : output.references) try {
+      if (reference.curve) read_reference(*reference.curve);
+    } catch (const FileError& error) {
+      faults.push_back(
+          {{"output", "references", name, "curve", "file"}, missing_file_text(error, reference.curve->file)});
+    }
+  if (!faults.empty()) throw PlacedError(std::move(faults));
 }
 
 }  // namespace grit

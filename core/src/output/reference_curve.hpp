@@ -16,4 +16,7 @@ struct ReferencePoints {
 /// there are fewer than two such points.
 ReferencePoints read_reference(const ReferenceCurve& curve);
 
+/// Reads the reference curves of a description before its run. Throws PlacedError with every file at fault.
+void check_references(const OutputDescription& output);
+
 }  // namespace grit

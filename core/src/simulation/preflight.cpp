@@ -92,7 +92,7 @@ class TimeStepCheck {
   Bodies smallest_of(const SceneDescription& now, const std::string& group) const {
     try {
       return smallest_bodies(now, components_, {group});
-    } catch (const FileError&) {
+    } catch (const PlacedError&) {
       return {};
     }
   }
