@@ -17,10 +17,12 @@
 #include "input/places.hpp"
 #include "input/scene.hpp"
 #include "kernel/kernel.hpp"
+#include "lint/doubtful_targets.hpp"
 #include "lint/endless_fall.hpp"
 #include "lint/excess_depth.hpp"
 #include "lint/installed_studies.hpp"
 #include "lint/repeated_geometry.hpp"
+#include "lint/soft_contacts.hpp"
 #include "lint/unmoved_bodies.hpp"
 #include "lint/unused_materials.hpp"
 #include "lint/unused_motions.hpp"
@@ -147,8 +149,13 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     std::cout << ", at most " << cost(most) / 3600 << " h (" << duration_text(cost(most))
               << ") if stages run to their limits";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
+  std::vector<UnusedSetting> warnings;
   for (const auto& warning : {unmoved_bodies(scene, kernel.world()), endless_fall(scene)})
-    if (warning) std::cout << "\nwarning\n  " << warning->pointer << ": " << warning->why << '\n';
+    if (warning) warnings.push_back(*warning);
+  std::ranges::move(tensile_targets(scene, live.geometries().all()), std::back_inserter(warnings));
+  std::ranges::move(missed_targets(scene), std::back_inserter(warnings));
+  std::ranges::move(soft_contacts(scene, kernel.world()), std::back_inserter(warnings));
+  for (const auto& [pointer, why] : warnings) std::cout << "\nwarning\n  " << pointer << ": " << why << '\n';
   auto idle = unused_settings(scene, components, kernel);
   std::ranges::move(unused_motions(scene), std::back_inserter(idle));
   const auto sets = options.list("set");

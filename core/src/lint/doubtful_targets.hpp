@@ -1,0 +1,24 @@
+// Targets of servos that bodies cannot bear, or that a condition does not wait for.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grit/geometry.hpp"
+#include "input/scene.hpp"
+#include "lint/unused_setting.hpp"
+
+namespace grit {
+
+/// A message for each servo that pulls, if no contact law with these materials has attraction: normal stresses of a
+/// cell below 0, forces along a wall's normal away from the bodies. `geometries`: of the walls at the start.
+std::vector<UnusedSetting> tensile_targets(const Scene& described,
+                                           const std::map<std::string, std::shared_ptr<const Geometry>>& geometries);
+
+/// A message for each condition on a pressure or stress that lies beyond all targets of its servo in its stage and the
+/// one before, so that it is not passed on the way.
+std::vector<UnusedSetting> missed_targets(const Scene& described);
+
+}  // namespace grit
