@@ -202,7 +202,7 @@ TEST_F(PackingFormats, LammpsDumpIsChecked) {
             "type x y z radius");
   EXPECT_EQ(with("type diameter z", "type mass z"), ":20: the columns id type mass z y x lack radius or diameter");
   EXPECT_EQ(problem(good.substr(0, good.find("2 3 0.04"))),
-            ":20: the snapshot of time step 200 is cut off: it has 0 of 1 bodies");
+            ":20: the snapshot of time step 200 is cut off: it has 0 of 1 body");
   EXPECT_EQ(with("200\n", "2oo\n"), ":13: found \"2oo\"; expected a time step");
   EXPECT_THAT(problem("0 0 0 1\n", "lammps-dump"),
               testing::StartsWith(":1: found \"0 0 0 1\"; expected ITEM: TIMESTEP, with which"));

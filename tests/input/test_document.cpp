@@ -208,9 +208,9 @@ TEST(Document, SetRefusesWhatItCannotDo) {
   Document document(Description::parse(R"({"a": 1, "l": [1]})"), "test");
   EXPECT_EQ(problems_of(document, "/a/b=1"), "--set: /a/b: there is nothing below /a, which is the number 1");
   EXPECT_EQ(problems_of(document, "/l/1=1"),
-            "--set: /l/1: there is no entry \"1\" in /l, which has 1 entries, counted from 0");
+            "--set: /l/1: there is no entry \"1\" in /l, which has 1 entry, counted from 0");
   EXPECT_EQ(problems_of(document, "/l/00=1"),
-            "--set: /l/00: there is no entry \"00\" in /l, which has 1 entries, counted from 0");
+            "--set: /l/00: there is no entry \"00\" in /l, which has 1 entry, counted from 0");
   EXPECT_EQ(problems_of(document, "a=1"), "--set: a: found \"a\"; allowed is a JSON pointer, e.g. /stages/0/limit");
   EXPECT_EQ(problems_of(document, "/a~2=1"),
             "--set: /a~2: found \"/a~2\"; allowed is a JSON pointer, e.g. /stages/0/limit");

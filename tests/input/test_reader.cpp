@@ -104,6 +104,31 @@ const char* const full = R"({"modulus": "200 kPa", "share": "25 %", "limit": "2 
 
 }  // namespace
 
+TEST(Reader, SuggestsDegreesForAnglesOutsideTheirRange) {
+  struct Angles {
+    double steep = 0, any = 0;
+    void declare(Parameters& p) {
+      p.add("steep", steep).unit("rad").at_least(0).below(1.5);
+      p.add("any", any).unit("rad");
+    }
+  };
+  const auto problems = [](const char* json) {
+    Angles angles;
+    Parameters p;
+    angles.declare(p);
+    std::vector<Problem> all;
+    read(Document(Description::parse(json), "test"), "", p, all);
+    return all.empty() ? "" : std::string(DescriptionError(all).what());
+  };
+  EXPECT_EQ(problems(R"({"steep": 30})"),
+            "test: /steep: found 30 rad; did you mean \"30 deg\"? Allowed is from 0 rad to below 1.5 rad");
+  EXPECT_EQ(problems(R"({"steep": 100})"), "test: /steep: found 100 rad; allowed is from 0 rad to below 1.5 rad");
+  EXPECT_EQ(problems(R"({"steep": -30})"), "test: /steep: found -30 rad; allowed is from 0 rad to below 1.5 rad");
+  EXPECT_EQ(problems(R"({"steep": "100 deg"})"),
+            "test: /steep: found 100 deg; allowed is from 0 deg to below 85.9437 deg");
+  EXPECT_EQ(problems(R"({"any": 30})"), "");
+}
+
 TEST(Reader, FillsWhatWasDeclared) {
   Everything x;
   EXPECT_EQ(problems_of(x, Description::parse(full)), "");

@@ -77,7 +77,8 @@ TEST(SetNumbers, AreRefusedLikeTheFirst) {
   };
   const std::vector<Case> cases{
       {"/materials/grain/friction_angle", 0.3, 7.0,
-       "set: /materials/grain/friction_angle: found 7 rad; allowed is from 0 rad to below 1.5708 rad"},
+       "set: /materials/grain/friction_angle: found 7 rad; did you mean \"7 deg\"? Allowed is from 0 rad to below "
+       "1.5708 rad"},
       {"/guards/travel", 0.01, -1.0, "set: /guards/travel: found -1; allowed is above 0"},
       {"/walls/lid/motion/velocity/2", 0.0, 1.0,
        "set: /walls/lid/motion/follow: found the axis z controlled by velocity and follow; allowed is one of "

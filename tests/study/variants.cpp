@@ -72,7 +72,7 @@ TEST(Studies, ReportErrors) {
               HasSubstr("/settings/r/usual: found \"3\"; allowed is one of the labels: 1, 2"));
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r", "/s"], "values": [[1, 2], 3]}})"),
               HasSubstr("/settings/r/values/1: found 3; allowed is a list of 2 values"));
-  EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 2], "labels": ["a"]}})"), HasSubstr("1 labels"));
+  EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 2], "labels": ["a"]}})"), HasSubstr("1 label;"));
   EXPECT_THAT(problems_of("{}"), HasSubstr("/settings"));
   EXPECT_THAT(problems_of(two_settings, R"(, "seeds": {"values": [1, 1]})"), HasSubstr("/seeds/values/0"));
   EXPECT_THAT(problems_of(two_settings, R"(, "seeds": {"values": [1.5]})"), HasSubstr("found 1.5; allowed"));

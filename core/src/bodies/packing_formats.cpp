@@ -131,7 +131,7 @@ std::vector<PackedBody> Packing::plain() {
         continue;
       }
       if (source_.columns.empty() && cells.size() > columns.size())
-        faults_.raise(lines.number(), "found " + std::to_string(cells.size()) + " columns in " +
+        faults_.raise(lines.number(), "found " + counted(cells.size(), "column", "columns") + " in " +
                                           quoted_excerpt(line, longest_line) +
                                           "; expected 4: x y z radius; name others in `columns`");
       reader.emplace(source_, faults_, std::move(columns), separator);
@@ -234,8 +234,8 @@ std::vector<PackedBody> Packing::lammps_data() {
 void Packing::add_velocity(std::string_view line, int number) {
   const auto cells = words(line);
   if (cells.size() != 4 && cells.size() != 7)
-    return faults_.add(
-        number, "found " + std::to_string(cells.size()) + " columns; expected 7: id vx vy vz wx wy wz, or the first 4");
+    return faults_.add(number, "found " + counted(cells.size(), "column", "columns") +
+                                   "; expected 7: id vx vy vz wx wy wz, or the first 4");
   const auto at = by_id_.find(cells[0]);
   if (at == by_id_.end())
     return faults_.add(number, "id is " + quoted_excerpt(cells[0]) + ", which the section Atoms does not have");
@@ -317,8 +317,8 @@ std::vector<PackedBody> Packing::lammps_dump() {
 void Packing::add_rows(RowReader& reader, TextLines lines, std::int64_t count, const std::string& of) {
   for (std::int64_t row = 0; row < count; ++row) {
     if (!lines.next() || lines.line().starts_with("ITEM:"))
-      faults_.raise(lines.number(),
-                    of + " is cut off: it has " + std::to_string(row) + " of " + std::to_string(count) + " bodies");
+      faults_.raise(lines.number(), of + " is cut off: it has " + std::to_string(row) + " of " +
+                                        counted(static_cast<std::size_t>(count), "body", "bodies"));
     add(reader, lines.line(), lines.number());
   }
 }

@@ -167,8 +167,8 @@ std::optional<PackedBody> RowReader::read(std::string_view line, int number) {
   if (cells_.size() < columns_.size() || (cells_.size() > columns_.size() && !more_)) {
     std::string names;
     for (const Column one : columns_) names += ' ' + name_of(one);
-    faults_.add(number, "found " + std::to_string(cells_.size()) + " columns; expected " + (more_ ? "at least " : "") +
-                            std::to_string(columns_.size()) + ':' + names);
+    faults_.add(number, "found " + counted(cells_.size(), "column", "columns") + "; expected " +
+                            (more_ ? "at least " : "") + std::to_string(columns_.size()) + ':' + names);
     return std::nullopt;
   }
   if (id_at_) id_ = cells_[*id_at_];

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "format/number.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 
 namespace grit {
@@ -125,7 +126,7 @@ void check_circles(const std::map<std::string, WallDescription>& walls, const Co
 void check_number_of_materials(const SceneDescription& scene, const Complain& complain) {
   constexpr std::size_t most = 255;
   if (scene.materials.size() > most)
-    complain("materials", std::to_string(scene.materials.size()) + " materials", std::to_string(most) + " or fewer");
+    complain("materials", counted(scene.materials.size(), "material", "materials"), std::to_string(most) + " or fewer");
 }
 
 void check_interfaces(const SceneDescription& scene, const Complain& complain) {
@@ -291,7 +292,7 @@ void SieveSizes::declare(Parameters& p) {
           return std::ranges::adjacent_find(v, std::greater_equal()) == v.end();
         };
         if (passing.size() != diameters.size())
-          complain("passing", std::to_string(passing.size()) + " entries",
+          complain("passing", counted(passing.size(), "entry", "entries"),
                    std::to_string(diameters.size()) + ", one per diameter");
         if (!rises(diameters)) complain("diameters", "a list that does not increase", "an increasing list");
         if (!rises(passing)) complain("passing", "a list that does not increase", "an increasing list");

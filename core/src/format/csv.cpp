@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "format/number.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 #include "grit/toolkit/text_file.hpp"
@@ -56,8 +57,8 @@ std::vector<std::vector<double>> read_columns(const std::string& file, const std
     const auto row = cells(line);
     if (row.empty() || row.front().starts_with('#')) continue;
     if (row.size() > head.size())
-      fail("found " + std::to_string(row.size()) + " cells in " + quoted_excerpt(line, longest_line) +
-           "; line 1 names " + std::to_string(head.size()) + " columns; numbers use a point, not a comma");
+      fail("found " + counted(row.size(), "cell", "cells") + " in " + quoted_excerpt(line, longest_line) +
+           "; line 1 names " + counted(head.size(), "column", "columns") + "; numbers use a point, not a comma");
     for (std::size_t k = 0; k < names.size(); ++k) {
       const std::string cell = indices[k] < row.size() ? row[indices[k]] : "";
       const auto [value, fault] = parse_number(cell);

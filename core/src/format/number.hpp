@@ -3,6 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -10,6 +11,11 @@ namespace grit {
 
 /// Four significant digits, for messages.
 inline std::string number(double value) { return fmt::format("{:.4g}", value); }
+
+/// "1 entry", "2 entries".
+inline std::string counted(std::size_t count, const char* one, const char* several) {
+  return std::to_string(count) + ' ' + (count == 1 ? one : several);
+}
 
 /// Three significant digits, with U+2212 for minus.
 std::string short_number(double value);

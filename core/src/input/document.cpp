@@ -5,6 +5,7 @@
 #include <iterator>
 #include <optional>
 
+#include "format/number.hpp"
 #include "grit/toolkit/text_file.hpp"
 
 namespace grit {
@@ -72,8 +73,8 @@ std::optional<std::size_t> index_in(const Description& list, const std::string& 
 }
 
 std::string no_entry(const std::string& token, const std::string& list, std::size_t size) {
-  return "there is no entry \"" + token + "\" in " + list + ", which has " + std::to_string(size) +
-         " entries, counted from 0";
+  return "there is no entry \"" + token + "\" in " + list + ", which has " + counted(size, "entry", "entries") +
+         ", counted from 0";
 }
 
 /// Whether all keys of a patch are indices of entries of the list.

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <regex>
 #include <set>
 #include <tuple>
 
+#include "format/number.hpp"
+#include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 #include "input/range.hpp"
 #include "input/units.hpp"
@@ -154,7 +157,9 @@ class Reader {
     if (value.is_number()) {
       const double found = value.get<double>();
       const std::string spelling = unit == "1" ? "" : unit;
-      if (!parameter.allows(found)) return out_of_range(at, quantity_text(found, unit, spelling), parameter, spelling);
+      if (!parameter.allows(found))
+        return out_of_range(at, quantity_text(found, unit, spelling) + degrees_meant(found, parameter), parameter,
+                            spelling);
       target = found;
       return true;
     }
@@ -170,6 +175,13 @@ class Reader {
     target = found->value;
     return true;
   }
+  /// For an angle that would be allowed in degrees.
+  static std::string degrees_meant(double found, const Parameter& parameter) {
+    if (parameter.unit() != "rad") return "";
+    const std::string degrees = quantity_text(found * std::numbers::pi / 180, "rad", "deg");
+    const auto meant = parse_quantity(degrees, "rad");
+    return meant && parameter.allows(meant->value) ? "; did you mean \"" + degrees + "\"?" : "";
+  }
   static std::string quantities(const Parameter& parameter) {
     const std::string& unit = parameter.unit();
     if (unit == "1") return "a number, or a text such as \"5 %\"";
@@ -177,7 +189,7 @@ class Reader {
   }
   bool out_of_range(const std::string& at, const std::string& found, const Parameter& parameter,
                     const std::string& spelling) {
-    return complain(at, "found " + found + "; allowed is " + range_text(parameter, spelling));
+    return complain(at, fault_text(found, range_text(parameter, spelling)));
   }
 
   bool read(const Description& value, const std::string& at, const Parameter& parameter, double* target) {
@@ -316,7 +328,7 @@ class Reader {
     return value.size() >= parameter.least_entries() || too_few(at, value, parameter);
   }
   bool too_few(const std::string& at, const Description& value, const Parameter& parameter) {
-    return complain(at, "found " + std::to_string(value.size()) + " entries; allowed are " +
+    return complain(at, "found " + counted(value.size(), "entry", "entries") + "; allowed are " +
                             std::to_string(parameter.least_entries()) + " or more");
   }
   bool wrong_length(const std::string& at, const Description& value, const std::string& allowed) {

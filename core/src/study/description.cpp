@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "format/number.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 #include "input/reader.hpp"
 
@@ -95,7 +96,7 @@ void SettingDescription::declare(Parameters& p) {
               complain("values/" + std::to_string(i), plain(values[i]),
                        "a list of " + std::to_string(pointers.size()) + " values, one for each pointer");
         if (!labels.empty() && labels.size() != values.size())
-          complain("labels", std::to_string(labels.size()) + " labels", "one per value, or none");
+          complain("labels", counted(labels.size(), "label", "labels"), "one per value, or none");
         for (std::size_t i = 0; i < levels(); ++i)
           for (std::size_t k = 0; k < i; ++k)
             if (label(i) == label(k)) complain("values", "the level \"" + label(i) + "\" twice", "different levels");
