@@ -159,6 +159,12 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
   const auto typo = grit({"study", "typo.json"});
   EXPECT_EQ(typo.status, 2);
   EXPECT_THAT(typo.err, AllOf(HasSubstr("typo.json, usual: /time_step/safty"), HasSubstr("did you mean \"safety\"")));
+  const auto description = grit({"study", "two.json"});
+  EXPECT_EQ(description.status, 2);
+  EXPECT_THAT(
+      description.err,
+      HasSubstr("/contacts: found a description of a simulation; allowed is a study, which names a description in "
+                "\"scene\" and varies it. 'grit run two.json' runs this one\n"));
   folder.write("key.json", R"({"scene": "two.json", "setting": {}})");
   const auto key = grit({"study", "key.json"});
   EXPECT_EQ(key.status, 2);

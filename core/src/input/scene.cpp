@@ -318,7 +318,8 @@ std::string scenario_type(const Document& document) {
 Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets,
                        const Registry& registry) {
   Document document = Document::load(path);
-  if (document.json().contains("scene") && document.json().contains("settings"))
+  if (document.json().contains("scene") &&
+      (document.json().contains("settings") || document.json().contains("metrics")))
     throw DescriptionError(
         {document.problem("/scene", "found a study; allowed is a description. 'grit study " + path.string() +
                                         "' runs a study; with --dry-run it lists the runs")});

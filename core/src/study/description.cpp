@@ -168,7 +168,15 @@ StudyDescription load_study(const std::filesystem::path& path) {
   StudyDescription study;
   Parameters parameters;
   study.declare(parameters);
-  read(Document::load(path), parameters);
+  const Document document = Document::load(path);
+  for (const char* key : {"scenario", "contacts", "bodies", "stages"})
+    if (document.json().contains(key) && !document.json().contains("scene"))
+      throw DescriptionError(
+          {document.problem('/' + std::string(key),
+                            "found a description of a simulation; allowed is a study, which names a description "
+                            "in \"scene\" and varies it. 'grit run " +
+                                path.string() + "' runs this one")});
+  read(document, parameters);
   return study;
 }
 
