@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <sstream>
+#include <thread>
 
 #include "scenes.hpp"
 #include "support/program.hpp"
@@ -103,6 +104,10 @@ TEST(Usage, WrongWordsAreNamed) {
            {{"run", "two.json", "--threads=-1"}, "--threads takes a number from 1 to 1024, not \"-1\""},
            {{"run", "two.json", "--threads", "many"}, "--threads takes a number from 1 to 1024, not \"many\""},
            {{"check", "two.json", "--threads", "0"}, "--threads takes a number from 1 to 1024, not \"0\""},
+           {{"plugins", "--plugin-path", "/nope"},
+            "--plugin-path takes a folder of plugins, not \"/nope\", which does not exist"},
+           {{"check", "two.json", "--plugin-path", "two.json"},
+            "--plugin-path takes a folder of plugins, not \"two.json\", which is a file"},
            {{"run", "two.json", "./two.json"},
             "two.json and ./two.json would both write to results/two; run them one by one, each with its own --out"},
        }) {
@@ -112,6 +117,21 @@ TEST(Usage, WrongWordsAreNamed) {
     EXPECT_THAT(outcome.err, AllOf(StartsWith("grit: "), HasSubstr(said)));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+TEST(Usage, MoreThreadsThanThoseOfTheMachineAreReported) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const unsigned present = std::thread::hardware_concurrency();
+  if (present == 0 || present >= 1024) GTEST_SKIP();
+  const std::string has = std::to_string(present), more = std::to_string(present + 1);
+  for (const char* command : {"check", "run"}) {
+    const auto outcome = grit_in(folder.path(), {command, "two.json", "--threads", more});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, StartsWith("grit: warning: --threads " + more + ": this machine runs " + has +
+                                        " at once, and more of them are slower; give " + has + " or fewer\n"));
+  }
+  EXPECT_THAT(grit_in(folder.path(), {"check", "two.json", "--threads", has}).err, IsEmpty());
 }
 
 }  // namespace

@@ -195,7 +195,7 @@ ExitStatus check_command(const std::vector<std::string>& words) {
   options.add_set();
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no description given; see 'grit check --help'");
-  options.threads();
+  options.warn_of_threads();
   const auto registry = options.registry();
   for (const std::string& file : options.words()) {
     const Scene scene = load_scene(file, options.list("set"), *registry);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <iostream>
+#include <system_error>
 #include <thread>
 
 #include "grit/toolkit/did_you_mean.hpp"
@@ -75,7 +77,23 @@ std::string Options::only_word(const char* what) const {
   return words_.front();
 }
 
-std::unique_ptr<Registry> Options::registry() const { return standard_registry(list("plugin-path")); }
+void Options::warn_of_threads() const {
+  const unsigned present = std::thread::hardware_concurrency();
+  if (present == 0 || threads() <= present) return;
+  std::cerr << "grit: warning: --threads " << threads() << ": this machine runs " << present
+            << " at once, and more of them are slower; give " << present << " or fewer" << std::endl;
+}
+
+std::unique_ptr<Registry> Options::registry() const {
+  const auto folders = list("plugin-path");
+  for (const std::string& folder : folders) {
+    std::error_code none;
+    if (!std::filesystem::is_directory(folder, none))
+      throw UsageError("--plugin-path takes a folder of plugins, not \"" + folder + "\", which " +
+                       (std::filesystem::exists(folder, none) ? "is a file" : "does not exist"));
+  }
+  return standard_registry(folders);
+}
 
 const Command& command(const std::string& name) {
   const auto found =

@@ -34,9 +34,12 @@ class Options {
   /// Value of --threads or --jobs. Throws UsageError if it is not from 1 to 1024.
   unsigned number(const char* name) const;
   unsigned threads() const { return number("threads"); }
+  /// Reports --threads beyond those of the machine.
+  void warn_of_threads() const;
   /// The single positional word of the command. Throws UsageError.
   std::string only_word(const char* what) const;
-  /// Built-in components and the plugins of --plugin-path, GRIT_PLUGIN_PATH and this installation.
+  /// Built-in components and the plugins of --plugin-path, GRIT_PLUGIN_PATH and this installation. Throws UsageError for
+  /// a --plugin-path that is no folder.
   std::unique_ptr<Registry> registry() const;
 
  private:

@@ -13,6 +13,7 @@
 #include "app/wall_shapes.hpp"
 #include "app/watch.hpp"
 #include "format/duration.hpp"
+#include "format/number.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "output/checkpoint.hpp"
@@ -119,11 +120,18 @@ ResultsOptions results_of(const RunJob& job, RunFacts facts, const Bodies& bodie
   return results;
 }
 
+std::string elapsed(double seconds) { return seconds < 60 ? cost_text(seconds) : duration_text(seconds); }
+
+/// The time of the whole run, also before a checkpoint, and its speed, which counts the time of the steps only.
 void print_speed(const RunSummary& summary) {
-  double all = 1e-9;
-  for (const PhaseTime& phase : summary.phases) all += phase.seconds;
-  std::cout << summary.steps << " steps of " << summary.bodies << (summary.bodies == 1 ? " body in " : " bodies in ")
-            << duration_text(summary.wall_seconds) << ", " << std::round(1e-4 * summary.particle_steps_per_second) / 100
+  double all = 1e-9, besides = 0;  // s
+  for (const PhaseTime& phase : summary.phases) {
+    all += phase.seconds;
+    if (phase.name == "probes" || phase.name == "output") besides += phase.seconds;
+  }
+  std::cout << summary.steps << " steps of " << counted(summary.bodies, "body", "bodies") << " in "
+            << elapsed(summary.wall_seconds + besides) << ", " << elapsed(summary.wall_seconds)
+            << " of it for steps: " << std::round(1e-4 * summary.particle_steps_per_second) / 100
             << " M particle-steps/s (";
   for (std::size_t i = 0; i < summary.phases.size(); ++i)
     std::cout << (i > 0 ? ", " : "") << summary.phases[i].name << ' '
@@ -218,7 +226,7 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   options.add_set();
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no description given; see 'grit run --help'");
-  options.threads();
+  options.warn_of_threads();
   if (options.has("resume") && options.has("overwrite"))
     throw UsageError("--resume continues results, --overwrite replaces them; give one of them");
   auto jobs = jobs_of(options);

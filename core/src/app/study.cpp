@@ -390,7 +390,7 @@ ExitStatus study_command(const std::vector<std::string>& words) {
   const std::filesystem::path file = options.only_word("study");
   if (options.has("dry-run") && options.has("collect"))
     throw UsageError("--dry-run lists the missing runs, --collect starts none; give one of them");
-  for (const char* name : {"jobs", "threads"}) options.number(name);
+  options.number("jobs"), options.warn_of_threads();
   const auto registry = options.registry();
   const StudyDescription study = load_study(file);
   const std::filesystem::path out =
