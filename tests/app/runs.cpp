@@ -190,7 +190,25 @@ TEST_F(Runs, ReportAFullDisk) {
                                              "\" run two.json --out small/results "
                                              "--set /output/frames/every_steps=1 --set /stages/0/until/value=100000'");
   EXPECT_EQ(outcome.status, 5) << outcome.err;
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("small/results/"), HasSubstr("No space left on device")));
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("small/results/"), HasSubstr("No space left on device"),
+                    HasSubstr("\n  free space on the disk, or remove the cause, then run it again, as there is "
+                              "no checkpoint yet: 'grit run --overwrite two.json'\n")));
+}
+
+TEST_F(Runs, ContinueAfterADiskWasFull) {
+  std::filesystem::create_directory(folder / "small");
+  const std::string in_a_small_disk = "unshare -rm bash -c 'mount -t tmpfs -o size=400k tmpfs small && ";
+  if (shell(folder.path(), in_a_small_disk + "true'").status != 0) GTEST_SKIP() << "no mounts for this user";
+  const auto outcome = shell(
+      folder.path(), in_a_small_disk + "\"" GRIT_BINARY
+                                       "\" run two.json --out small/results --set /output/checkpoint_every=1e-6 --set "
+                                       "/output/frames/every_steps=50 --set /stages/0/until/value=100000'");
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("No space left on device"),
+                    HasSubstr("\n  free space on the disk, or remove the cause, then continue from the last "
+                              "checkpoint: 'grit run --resume small/results'\n")));
 }
 
 class Interrupted : public Runs, public testing::WithParamInterface<int> {};

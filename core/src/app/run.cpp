@@ -86,6 +86,18 @@ std::string resume_advice(Guard guard, const std::filesystem::path& folder) {
          (guard == Guard::travel ? "travel" : "energy") + " and continue with --resume";
 }
 
+/// Runs the simulation. A file that cannot be written ends it, on a full disk for one; the message says how to go on.
+RunSummary run_or_advise(Simulation& simulation, const RunJob& job) try {
+  return run_recorded(simulation);
+} catch (const FileError& error) {
+  const bool saved = std::filesystem::exists(job.folder / "checkpoint.h5");
+  throw FileError(error.what() + std::string("\n  free space on the disk, or remove the cause, then ") +
+                  (saved
+                       ? "continue from the last checkpoint: 'grit run --resume " + shell_word(job.folder.string())
+                       : "run it again, as there is no checkpoint yet: 'grit run --overwrite " + shell_word(job.file)) +
+                  '\'');
+}
+
 RunFacts facts_of(const RunJob& job, unsigned threads, const std::vector<std::string>& command_line) {
   const OpenedScene& opened = *job.opened;
   const SceneDescription& description = *opened.scene.description;
@@ -192,7 +204,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     say("continues from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
     simulation.resume(*checkpoint);
   }
-  const RunSummary summary = run_recorded(simulation);
+  const RunSummary summary = run_or_advise(simulation, job);
   bar.end();
 
   std::cout << curves.text();
