@@ -433,6 +433,8 @@ TEST(Reports, ComeAtTheirCadence) {
   EXPECT_EQ(done.notes.finished, 1);
   d["output"].erase("frames");
   EXPECT_THAT(run(d).notes.frames, testing::IsEmpty());
+  d["output"]["frames"]["formats"] = Description::array({"vtk"});
+  EXPECT_THAT(run(d).notes.frames, ElementsAre(18)) << "at the end of the run";
 }
 
 TEST(Reports, ComeByDisplacementOfAWall) {

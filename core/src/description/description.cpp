@@ -1064,7 +1064,9 @@ void FramesDescription::declare(Parameters& p) {
 }
 void OutputDescription::declare(Parameters& p) {
   p.add("frames", frames)
-      .doc("when frames are written; one is always written at the end of the run; default: only that one");
+      .doc(
+          "when frames are written; with an interval also at the start and at the end of each stage, with formats but "
+          "no interval at the end of the run; default: never");
   p.add("checkpoint_every", checkpoint_every)
       .unit("s")
       .at_least(0)

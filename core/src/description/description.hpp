@@ -551,6 +551,7 @@ struct ReferenceDescription {
 };
 struct FramesDescription : Cadence {
   std::vector<std::string> formats;  ///< beside HDF5
+  bool never() const { return Cadence::never() && formats.empty(); }
   void declare(Parameters& p);
 };
 struct OutputDescription {

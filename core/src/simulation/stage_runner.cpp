@@ -310,7 +310,7 @@ std::string StageRunner::reached() const {
 
 void StageRunner::finish(RunSummary& summary) {
   sample(true);
-  if (!frames_.never()) frame();
+  if (!scene_.description->output.frames.never()) frame();
   fill(summary);
   recorder_.finish(world_, summary);
 }
