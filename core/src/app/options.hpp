@@ -38,8 +38,8 @@ class Options {
   void warn_of_threads() const;
   /// The single positional word of the command. Throws UsageError.
   std::string only_word(const char* what) const;
-  /// Built-in components and the plugins of --plugin-path, GRIT_PLUGIN_PATH and this installation. Throws UsageError for
-  /// a --plugin-path that is no folder.
+  /// Built-in components and the plugins of --plugin-path, GRIT_PLUGIN_PATH and this installation. Throws UsageError
+  /// for a --plugin-path that is no folder.
   std::unique_ptr<Registry> registry() const;
 
  private:

@@ -18,16 +18,9 @@ namespace {
 constexpr std::size_t normal_components = 3;  // xx, yy, zz come first
 
 /// Whether any bodies, or bodies and walls, may attract each other.
-bool attracts(const ContactLaw& law, std::size_t of_bodies, std::size_t materials) {
-  constexpr PairSize pair{
-      .radius_a = 1e-3, .radius_b = 1e-3, .inverse_mass_a = 1e5, .inverse_mass_b = 1e5, .overlap = 0};
-  constexpr PairSize at_wall{
-      .radius_a = 1e-3, .radius_b = 1e-3, .inverse_mass_a = 1e5, .inverse_mass_b = 0, .overlap = 0, .wall = true};
-  if (!law.has_reach()) return false;
-  for (std::size_t a = 0; a < of_bodies; ++a)
-    for (std::size_t b = 0; b < materials; ++b)
-      if ((b < of_bodies && law.reach(pair, a, b) > 0) || law.reach(at_wall, a, b) > 0) return true;
-  return false;
+bool attracts(const ContactLaw& law) {
+  constexpr double radius = 1e-3;  // m; any has a reach or none
+  return std::ranges::any_of(law.reaches(radius), [](double reach) { return reach > 0; });
 }
 
 bool turns(const MotionDescription& motion) {
@@ -169,7 +162,7 @@ std::vector<UnusedSetting> tensile_targets(const Scene& described,
   through_stages(
       *described.description, described.stages, [&](const SceneDescription& now, std::optional<std::size_t>) {
         mixed.follow(now);
-        if (attracts(mixed.law(), materials_of_bodies(now), now.materials.size())) return true;
+        if (attracts(mixed.law())) return true;
         if (now.domain.servo)
           for (std::size_t k = 0; k < normal_components; ++k)
             if (const auto target = now.domain.servo->targets()[k]; target && *target < 0)
