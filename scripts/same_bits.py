@@ -51,8 +51,11 @@ def series(folder):
     return found
 
 
-def renamed(found, renames):
+def renamed(found, renames, present):
+    """`found` under the names of today. What `present` knows by its name has been renamed already."""
     def channel_of(group, channel):
+        if (groups.get(group, group), channel) in present:
+            return channel
         for old, new in renames.get('channels', {}).items():
             match = re.fullmatch(old, f'{group}/{channel}' if '/' in old else channel)
             if match:
@@ -97,6 +100,10 @@ def main():
     descriptions = sorted(path.relative_to(given.new) for path in given.new.glob(given.only))
     if not descriptions:
         parser.error(f'no description matches {given.only}')
+    added = [description for description in descriptions if not (given.old / description).is_file()]
+    for description in added:
+        print(f'{description}: only in the new tree, not compared')
+    descriptions = [description for description in descriptions if description not in added]
 
     failed = 0
     for description in descriptions:
@@ -106,7 +113,7 @@ def main():
                 done = [run(tree.resolve(), description, folder, given.seconds)
                         for tree, folder in zip((given.old, given.new), folders)]
                 old, new = (series(folder) for folder in folders)
-                lines, compared = differences(renamed(old, renames), new, all(done))
+                lines, compared = differences(renamed(old, renames, new), new, all(done))
             except (RuntimeError, OSError) as error:
                 lines, compared = [str(error)], 0
         if not lines and not compared:
