@@ -2,6 +2,7 @@
 // reading, checks, schema and reference pages are derived from these declarations.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <map>
@@ -377,6 +378,9 @@ struct EngineDescription {
   std::vector<std::string> groups;  ///< of bodies on which it acts; empty: all
   explicit EngineDescription(const Registry& registry) : engine(registry) {}
   void declare(Parameters& p);
+  bool acts_on(const std::string& group) const {
+    return groups.empty() || std::ranges::find(groups, group) != groups.end();
+  }
 };
 struct ProbeDescription {
   Component<Probe> probe;

@@ -29,7 +29,7 @@ std::vector<ActingEngine> take_engines(const SceneDescription& scene, const Comp
 MotionSettings motion_of(const std::vector<ActingEngine>& engines, std::optional<std::size_t> group) {
   MotionSettings motion;
   for (const ActingEngine& one : engines)
-    if (one.groups.empty() || (group && one.groups[*group])) one.engine->settings(motion);
+    if (group ? one.acts_on(*group) : one.groups.empty()) one.engine->settings(motion);
   return motion;
 }
 

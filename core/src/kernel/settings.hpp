@@ -25,6 +25,7 @@ using GroupMask = std::vector<bool>;
 struct ActingEngine {
   const Engine* engine;
   GroupMask groups;
+  bool acts_on(std::size_t group) const { return groups.empty() || groups[group]; }
 };
 
 struct Settings {

@@ -54,11 +54,8 @@ inline double longest(const StageDescription& stage) {
 inline MotionSettings settings_of(const SceneDescription& scene, const EngineMap& engines, const std::string& group,
                                   const std::string& excluded = "") {
   MotionSettings settings;
-  for (const auto& [name, engine] : engines) {
-    const auto& groups = scene.engines.at(name).groups;
-    if (name != excluded && (groups.empty() || std::ranges::find(groups, group) != groups.end()))
-      engine->settings(settings);
-  }
+  for (const auto& [name, engine] : engines)
+    if (name != excluded && scene.engines.at(name).acts_on(group)) engine->settings(settings);
   return settings;
 }
 
