@@ -308,8 +308,6 @@ TEST(Descriptions, CheckReportsSettingsWithoutEffect) {
   EXPECT_THAT(check({turning, held, damped, later(R"({"damping": {"coefficient": 0.3}})")}), turns_not)
       << "a stage changes another engine";
   EXPECT_THAT(check({turning, held, later(R"({"hold": {"rotation": "none"}})")}), testing::Not(turns_not));
-  const std::string second = R"(/engines/other={"type": "local-damping", "coefficient": 0})";
-  EXPECT_THAT(check({damped, second}), testing::Not(HasSubstr("/engines/other"))) << "the last one counts";
   EXPECT_THAT(
       check({"/time_step/value=1e-9", "/time_step/safety=0.5", R"(/stages/0/change={"time_step": {"value": null}})"}),
       testing::Not(HasSubstr("/time_step/safety")));

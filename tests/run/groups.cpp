@@ -228,6 +228,73 @@ TEST(Groups, ThatDoNotExistAreReported) {
   }
 }
 
+/// What is wrong with the engines of two groups, or with their change in a stage.
+std::string fault_of(const Description& engines, const Description& change = Description::object()) {
+  Description d = two_groups({{{0, 0, 0}, radius}}, {{{1, 0, 0}, radius}});
+  d["engines"] = engines;
+  if (!change.empty()) d["stages"][0]["change"] = {{"engines", change}};
+  try {
+    scene_of(d);
+  } catch (const DescriptionError& error) {
+    return error.what();
+  }
+  return "";
+}
+Description moving(const Vec3& velocity, const Vec3& spin = Vec3::Zero()) {
+  return {{"type", "prescribed-motion"}, {"velocity", vector(velocity)}, {"spin", vector(spin)}};
+}
+Description of_group(Description engine, const std::string& group) {
+  engine["groups"] = {group};
+  return engine;
+}
+
+TEST(Groups, EnginesThatContradictEachOtherAreReported) {
+  const Description along_x = moving({0.1, 0, 0}), along_y = moving({0, 0.2, 0});
+  EXPECT_EQ(fault_of({{"p1", along_x}, {"p2", along_y}}),
+            "test: /engines/p2: found a prescribed motion of the group \"grains\", which the engine \"p1\" sets "
+            "differently; allowed is one of them for each group; limit them to different groups, or remove one");
+  EXPECT_EQ(fault_of({{"p1", of_group(along_x, "grains")}, {"p2", of_group(along_y, "others")}}), "");
+  EXPECT_THAT(fault_of({{"p1", of_group(along_x, "others")}, {"p2", along_y}}), HasSubstr("group \"others\""));
+  EXPECT_EQ(fault_of({{"p1", along_x}, {"p2", along_x}}), "");
+  EXPECT_THAT(fault_of({{"p1", along_x}, {"p2", along_x}}, {{"p1", {{"velocity", {0, 0, 1}}}}}),
+              HasSubstr("/engines/p2: found a prescribed motion"))
+      << "after a change";
+  EXPECT_THAT(fault_of({{"a", {{"type", "planar"}, {"normal", "y"}}}, {"b", {{"type", "planar"}, {"normal", "z"}}}}),
+              HasSubstr("/engines/b: found a plane of motion of the group"));
+  EXPECT_THAT(fault_of({{"a", {{"type", "local-damping"}, {"coefficient", 0.7}}},
+                        {"b", {{"type", "local-damping"}, {"coefficient", 0}}}}),
+              HasSubstr("/engines/b: found a local damping of the group"));
+  EXPECT_EQ(fault_of({{"a", gravity()}, {"b", {{"type", "gravity"}, {"acceleration", {1, 0, 0}}}}}), "") << "a sum";
+}
+
+TEST(Groups, MotionsAlongHeldAxesAreReported) {
+  const auto holding = [](const std::string& translation, const std::string& rotation) {
+    return Description{{"type", "hold"}, {"translation", translation}, {"rotation", rotation}};
+  };
+  EXPECT_EQ(fault_of({{"hold", holding("xz", "none")}, {"push", moving({0.1, 0, 0})}}),
+            "test: /engines/push: found a prescribed motion of the group \"grains\" along x, which the engine \"hold\" "
+            "holds; allowed is another axis, or an engine \"hold\" for other groups");
+  EXPECT_EQ(fault_of({{"hold", holding("xz", "xyz")}, {"push", moving({0, 0.1, 0})}}), "");
+  EXPECT_EQ(fault_of({{"hold", holding("xyz", "xyz")}, {"fixed", moving(Vec3::Zero())}}), "");
+  EXPECT_THAT(fault_of({{"hold", holding("none", "y")}, {"turn", moving(Vec3::Zero(), {0, 3, 0})}}),
+              HasSubstr("/engines/turn: found a prescribed motion of the group \"grains\" about y"));
+  EXPECT_THAT(fault_of({{"hold", holding("z", "none")}, {"turn", moving(Vec3::Zero(), {0, 3, 0})}}),
+              HasSubstr("along z"))
+      << "a rotation about y moves along x and z";
+  EXPECT_EQ(fault_of({{"hold", holding("y", "x")}, {"turn", moving(Vec3::Zero(), {0, 3, 0})}}), "");
+}
+
+TEST(Groups, MotionsOutOfTheirPlaneAreReported) {
+  const auto in_plane = [](const Description& motion) {
+    return fault_of({{"flat", {{"type", "planar"}, {"normal", "y"}}}, {"move", motion}});
+  };
+  EXPECT_EQ(in_plane(moving({0, 1, 0})),
+            "test: /engines/move: found a prescribed motion of the group \"grains\" out of the plane of the engine "
+            "\"flat\"; allowed is a velocity across y and a spin about it, or other groups");
+  EXPECT_THAT(in_plane(moving(Vec3::Zero(), {1, 0, 0})), HasSubstr("out of the plane"));
+  EXPECT_EQ(in_plane(moving({1, 0, 2}, {0, 5, 0})), "");
+}
+
 // ---- sinks
 
 TEST(Sink, RemovesWhatEntersItsRegion) {

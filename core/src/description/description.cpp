@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "description/motion_checks.hpp"
 #include "format/number.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 
@@ -164,8 +165,7 @@ void check_weight(const SceneDescription& scene, const Complain& complain) {
   const auto has_weight = [&](const std::string& group) {
     MotionSettings settings;
     for (const auto& [name, engine] : scene.engines)
-      if (engine.groups.empty() || std::ranges::find(engine.groups, group) != engine.groups.end())
-        engine.engine.make()->settings(settings);
+      if (engine.acts_on(group)) engine.engine.make()->settings(settings);
     return !settings.gravity.isZero(0.0);
   };
   for (const auto& [name, group] : scene.bodies)
@@ -1182,6 +1182,7 @@ void SceneDescription::check_together(const Complain& complain) const {
   check_interfaces(*this, complain);
   check_materials_of_bodies(*this, complain);
   check_weight(*this, complain);
+  check_motions(*this, complain);
   check_materials_of_walls(*this, complain);
   check_groups(*this, complain);
   check_followers(*this, complain);
@@ -1222,6 +1223,7 @@ void SceneDescription::declare(Parameters& p) {
   p.check_names([this](const Complain& complain) { check_interfaces(*this, complain); });
   p.check_names([this](const Complain& complain) { check_materials_of_bodies(*this, complain); });
   p.check([this](const Complain& complain) { check_weight(*this, complain); }, {"bodies", "engines"});
+  p.check([this](const Complain& complain) { check_motions(*this, complain); }, {"bodies", "engines"});
   p.check(
       [this](const Complain& complain) {
         const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
