@@ -8,11 +8,13 @@
 #include <deque>
 
 #include "grit/plugin.hpp"
+#include "grit/toolkit/formula_text.hpp"
 
 namespace grit {
 namespace {
 
 constexpr const char* names = "x, y, z, vx, vy, vz, radius, mass, time, and those of constants";
+const std::vector<std::string> variables{"x", "y", "z", "vx", "vy", "vz", "radius", "mass", "time"};
 
 /// A sphere or clump: what a formula may name.
 struct Grain {
@@ -96,8 +98,21 @@ void ForceField::declare(Parameters& p) {
   p.add("per", per).one_of({"mass", "body"}).doc("mass: the components are accelerations [m/s^2]; body: forces [N]");
   p.add("constants", constants).doc("constants for use in formulas; ramps may change them");
   p.check([this](const Complain& complain) {
+    bool named = true;
+    for (const auto& [name, _] : constants) {
+      const std::string key = "constants/" + name;
+      if (!is_formula_name(name))
+        complain(key, "the name \"" + name + '"', "letters, digits and _, not starting with a digit"), named = false;
+      else if (std::ranges::find(variables, name) != variables.end())
+        complain(key, "the name of a variable", "a name that is not a variable"), named = false;
+    }
+    if (!named) return;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::string key(1, "xyz"[k]);
+      if (const auto at = assignment_in(formulas[k]); at != std::string::npos) {
+        complain(key, '"' + formulas[k] + "\": \"=\" at character " + std::to_string(at + 1), no_assignment);
+        continue;
+      }
       try {
         std::array<std::string, 3> alone{"0", "0", "0"};
         alone[k] = formulas[k];

@@ -51,19 +51,38 @@ TEST(ForceField, StatesItsStiffnessAndDamping) {
   EXPECT_NEAR(field("-7 * vx * abs(vx)")->rates(world).damping, 7, 1e-6) << "2 c |v|";
 }
 
+/// What the engine reports of a formula, and of one with a constant of this name.
+std::string fault(const std::string& x, const std::string& constant = "k") {
+  ForceField engine;
+  engine.formulas[0] = x;
+  engine.constants[constant].value = 1;
+  Parameters parameters;
+  engine.declare(parameters);
+  std::string text;
+  for (const auto& check : parameters.checks())
+    check.run([&](std::string_view key, std::string_view found, std::string_view allowed) {
+      text += std::string(key) + ": found " + std::string(found) + ", allowed " + std::string(allowed);
+    });
+  return text;
+}
+
+/// An assignment would change what the other formulas see.
+TEST(ForceField, AssignsNothing) {
+  EXPECT_EQ(fault("x = 5"),
+            "x: found \"x = 5\": \"=\" at character 3, allowed an expression without assignments; \"==\" compares");
+  EXPECT_THAT(fault("radius=1"), testing::HasSubstr("\"=\" at character 7"));
+  EXPECT_THAT(fault("x > 0 ? k = 2 : 0"), testing::HasSubstr("\"=\" at character 11"));
+  EXPECT_EQ(fault("x >= 0 && y <= 1 && z != 2 && time == 3 ? k : 0"), "");
+}
+
+TEST(ForceField, RefusesConstantsThatMeanTwoThings) {
+  EXPECT_EQ(fault("x", "x"), "constants/x: found the name of a variable, allowed a name that is not a variable");
+  EXPECT_THAT(fault("time", "time"), testing::HasSubstr("constants/time: found the name of a variable"));
+  EXPECT_EQ(fault("x", "2k"),
+            "constants/2k: found the name \"2k\", allowed letters, digits and _, not starting with a digit");
+}
+
 TEST(ForceField, ReportsWhatItCannotRead) {
-  const auto fault = [](const std::string& x) {
-    ForceField engine;
-    engine.formulas[0] = x;
-    Parameters parameters;
-    engine.declare(parameters);
-    std::string text;
-    for (const auto& check : parameters.checks())
-      check.run([&](std::string_view key, std::string_view found, std::string_view allowed) {
-        text += std::string(key) + ": found " + std::string(found) + ", allowed " + std::string(allowed);
-      });
-    return text;
-  };
   EXPECT_EQ(fault("-3 * x"), "");
   EXPECT_THAT(fault("3 * w"), testing::AllOf(testing::HasSubstr("x: found"), testing::HasSubstr("unknown name \"w\"")));
   EXPECT_THAT(fault("3 *"), testing::HasSubstr("muParser's syntax"));

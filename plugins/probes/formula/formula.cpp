@@ -13,6 +13,7 @@
 #include <tuple>
 
 #include "grit/plugin.hpp"
+#include "grit/toolkit/formula_text.hpp"
 #include "grit/toolkit/grain_masses.hpp"
 #include "grit/toolkit/specimen.hpp"
 #include "grit/toolkit/wall_names.hpp"
@@ -113,22 +114,6 @@ std::string known_names(const World& world, const std::map<std::string, FormulaP
   return known + "<wall>_pressure, <wall>_area";
 }
 
-bool is_name(const std::string& text) {
-  static const std::regex pattern("[A-Za-z_][A-Za-z0-9_]*");
-  return std::regex_match(text, pattern);
-}
-
-/// Where a formula assigns; npos if it does not. muParser takes "a = 1" for an assignment to its variable.
-std::size_t assignment(const std::string& formula) {
-  for (std::size_t i = 0; i < formula.size(); ++i) {
-    if (formula[i] != '=') continue;
-    const bool compares = (i > 0 && std::string_view("<>!=").find(formula[i - 1]) != std::string_view::npos) ||
-                          (i + 1 < formula.size() && formula[i + 1] == '=');
-    if (!compares) return i;
-  }
-  return std::string::npos;
-}
-
 /// muParser's message without its count of characters, which begins at 0.
 std::string plain_message(const mu::ParserError& error) {
   static const std::regex position("( found)? at (expression )?position -?[0-9]+");
@@ -175,7 +160,7 @@ void FormulaProbe::declare(Parameters& parameters) {
         complain("curves", "the name \"" + curve.first + "\"",
                  "lower-case letters, digits and _, starting with a letter");
     for (const auto& constant : constants)
-      if (!is_name(constant.first))
+      if (!is_formula_name(constant.first))
         complain("constants", "the name \"" + constant.first + "\"",
                  "letters, digits and _, not starting with a digit");
   });
@@ -200,8 +185,7 @@ void FormulaProbe::prepare(const World& world) {
           {{"curves/" + name + "/formula",
             '"' + curve.formula + "\": " + why + " at character " + std::to_string(position + 1) + meant, allowed}});
     };
-    if (const auto at = assignment(curve.formula); at != std::string::npos)
-      fail(at, "\"=\"", "an expression without assignments; \"==\" compares");
+    if (const auto at = assignment_in(curve.formula); at != std::string::npos) fail(at, "\"=\"", no_assignment);
     auto& parser = evaluation->parsers.emplace_back();
     try {
       for (auto& variable : variables) parser.DefineVar(variable.name, &variable.value);
@@ -213,7 +197,7 @@ void FormulaProbe::prepare(const World& world) {
     } catch (const mu::ParserError& error) {
       // muParser reads one blank past the end.
       const auto position = std::min(static_cast<std::size_t>(std::max(error.GetPos(), 0)), curve.formula.size());
-      if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && is_name(error.GetToken()))
+      if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && is_formula_name(error.GetToken()))
         fail(position, "the unknown name \"" + error.GetToken() + '"',
              "one of the names " + known_names(world, constants), did_you_mean(error.GetToken(), names));
       fail(position, plain_message(error), "an expression in muParser's syntax");
