@@ -531,6 +531,32 @@ TEST_P(ContactLawContract, StiffnessIsTheSlopeOfTheForce) {
   }
 }
 
+/// The time step uses 2 ζ √(k m*) with the stiffness and ratio that a law states.
+TEST_P(ContactLawContract, StatedDampingCoversTheDashpots) {
+  const double speed = 1e-3;
+  for (const double overlap : {2e-3, 0.05}) {
+    Pairs pairs = two(overlap);
+    pairs.step();
+    const PairSize pair = size(pairs, overlap);
+    const Stiffness k = law_->stiffness(pair, 0, 0);
+    const double inverse_mass = pair.inverse_mass_a + pair.inverse_mass_b;
+    const auto at = [&](const Vec3& velocity) {
+      Pairs moving = pairs;
+      set(moving.velocity(1), velocity);
+      moving.evaluate();
+      return moving;
+    };
+    const Pairs closing = at({0, 0, -speed}), opening = at({0, 0, speed});
+    const double normal = (closing.row(0).force.w - opening.row(0).force.w) / (2 * speed);
+    const double critical = 2 * std::sqrt(k.normal / inverse_mass);
+    EXPECT_GE(k.damping_ratio * critical, normal - 1e-6 * critical);
+    Pairs slipping = at({speed, 0, 0});
+    const double across = shear(slipping, 0).norm() / speed - k.shear * dt_,
+                 critical_shear = 2 * std::sqrt(k.shear / (3.5 * inverse_mass));
+    EXPECT_GE(k.shear_damping_ratio * critical_shear, across - 1e-6 * critical_shear);
+  }
+}
+
 /// Forces and moments oppose the motion that causes them.
 TEST_P(ContactLawContract, ResistanceOpposesMotion) {
   const Stiffness k = law_->stiffness(PairSize{1, 0.7, 1, 1, 0.02}, 0, 0);

@@ -225,9 +225,12 @@ struct Jkr : LawBase {
     const double radius = reduced_radius(size.radius_a, size.radius_b, pair.curved);
     const double u = upper_root(std::max(size.overlap, least_overlap * radius) / scale.depth);
     const double fifth = u * u * u * u * u;
-    return {.normal = scale.force / scale.depth * (8 * fifth - 6 * u * u) / (4 * u * u * u - 1),
-            .shear = pair.friction > 0 ? 8 * pair.shear_modulus * scale.width * u * u : 0,
-            .damping_ratio = 0.5 * pair.damping};
+    const double contact_radius = scale.width * u * u,
+                 slope = scale.force / scale.depth * (8 * fifth - 6 * u * u) / (4 * u * u * u - 1);
+    // The dashpot follows the stiffness without adhesion, 2 E* a, which is above the slope.
+    return {.normal = slope,
+            .shear = pair.friction > 0 ? 8 * pair.shear_modulus * contact_radius : 0,
+            .damping_ratio = 0.5 * pair.damping * std::sqrt(2 * pair.modulus * contact_radius / slope)};
   }
   static ElasticEnergy energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
     const Scale<double> scale = scale_of(pair, size.radius_a, size.radius_b);
