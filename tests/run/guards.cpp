@@ -294,10 +294,33 @@ TEST(Guards, NotANumber) {
   installed().add(poison);
   Description d = two(1, 1);
   d["engines"]["poison"] = {{"type", "poison"}};
-  EXPECT_EQ(complaint(d, 5), "");
-  EXPECT_THAT(complaint(d, 6),
-              testing::MatchesRegex("step 6, time 6e-06 s: body [01] at .* has a velocity that is not a number; "
+  EXPECT_EQ(complaint(d, 4), "");
+  EXPECT_THAT(
+      complaint(d, 5),
+      testing::MatchesRegex("step 5, time 5e-06 s: body [01] at .* gets a force of the engine \"poison\" that is "
+                            "not finite; this engine needs a finite value wherever bodies are, at every "
+                            "velocity and time"));
+  d["engines"]["before"] = d["engines"]["zero"] = {{"type", "drag"}, {"viscosity", 1e-5}, {"law", "stokes"}};
+  EXPECT_THAT(complaint(d, 5), HasSubstr("of the engine \"poison\"")) << "not of the others";
+
+  Description heavy = two(1, 1);
+  for (const char* name : {"one", "other"})
+    heavy["engines"][name] = {{"type", "gravity"}, {"acceleration", {0, 1.5e308, 0}}};
+  EXPECT_THAT(complaint(heavy, 1),
+              testing::MatchesRegex("step 1, time 1e-06 s: body [01] at .* has a velocity that is not a number; "
                                     "two bodies may have started at the same point, or the time step is too large"));
+}
+
+/// What an engine adds to bodies on which it does not act is discarded, whatever it is.
+TEST(Guards, AForceOnOtherGroupsMayBeAnything) {
+  Description d = two(1, 1);
+  d["bodies"]["others"] = d["bodies"]["grains"];
+  d["bodies"]["others"]["source"]["bodies"] = Description::array({{{"position", {-1, 0, 0}}, {"radius", 1e-3}}});
+  d["engines"]["root"] = {{"type", "force-field"}, {"z", "sqrt(x)"}, {"groups", {"grains"}}};
+  EXPECT_EQ(complaint(d, 3), "") << "the other group is at a negative x";
+  d["engines"]["root"]["groups"] = {"others"};
+  EXPECT_THAT(complaint(d, 0),
+              HasSubstr("body 2 at (-1, 0, 0) m gets a force of the engine \"root\" that is not finite"));
 }
 
 TEST(Guards, LeftTheDomain) {

@@ -139,6 +139,24 @@ void Stepper::sum_forces(bool again) {
   });
 }
 
+/// Throws for the first body whose force or moment is not finite since `one` added to it.
+void Stepper::check_finite(const ActingEngine& one, std::span<const Row> force, std::span<const Row> moment) const {
+  // 0 times infinity is not a number.
+  double nothing = 0;
+  for (std::size_t i = 0; i < force.size(); ++i)
+    nothing += 0 * (force[i].x + force[i].y + force[i].z + moment[i].x + moment[i].y + moment[i].z);
+  if (nothing == 0) return;
+  std::string name;
+  for (const auto& [known, engine] : state_.settings.engines)
+    if (engine.get() == one.engine) name = known;
+  for (std::size_t i = 0; i < force.size(); ++i)
+    if (const bool pushes = xyz(force[i]).allFinite(); !pushes || !xyz(moment[i]).allFinite())
+      fail_at_body(
+          state_, Guard::finite, {"engines", name}, i,
+          std::string("gets a ") + (pushes ? "moment" : "force") + " of the engine \"" + name + "\" that is not finite",
+          "this engine needs a finite value wherever bodies are, at every velocity and time");
+}
+
 void Stepper::add_forces_of_engines() {
   state_.added_force.clear(), state_.added_moment.clear();
   if (state_.settings.force_engines.empty()) return;
@@ -147,12 +165,13 @@ void Stepper::add_forces_of_engines() {
   for (const ActingEngine& one : state_.settings.force_engines) {
     if (one.groups.empty()) {
       one.engine->forces(view_, force, moment);
-      continue;
+    } else {
+      std::vector<Row> own_force(count), own_moment(count);
+      one.engine->forces(view_, own_force, own_moment);
+      for (std::size_t i = 0; i < count; ++i)
+        if (one.groups[state_.group[i]]) force[i] += own_force[i], moment[i] += own_moment[i];
     }
-    std::vector<Row> own_force(count), own_moment(count);
-    one.engine->forces(view_, own_force, own_moment);
-    for (std::size_t i = 0; i < count; ++i)
-      if (one.groups[state_.group[i]]) force[i] += own_force[i], moment[i] += own_moment[i];
+    check_finite(one, force, moment);
   }
   for (std::size_t i = 0; i < count; ++i) state_.sum[i].force += force[i], state_.sum[i].moment += moment[i];
   state_.added_force.swap(force), state_.added_moment.swap(moment);

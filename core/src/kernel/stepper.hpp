@@ -1,6 +1,7 @@
 // One step: neighbours, forces, motion.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "bodies/make_bodies.hpp"
@@ -54,6 +55,7 @@ class Stepper {
   void evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps);
   void move(std::size_t chunk, const BodySum* sum, const MotionStep& step);
   void sum_forces(bool again);
+  void check_finite(const ActingEngine& one, std::span<const Row> force, std::span<const Row> moment) const;
   void add_forces_of_engines();
   /// Collects the results of chunks for walls and guards.
   void take_loads();
