@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/time_step_control.hpp"
@@ -73,6 +74,31 @@ TEST_F(TimeStep, IsStableWithTheRatesOfEngines) {
   state_.settings.force_engines = {{&damper, {}}};
   EXPECT_LT(set(), without);
   EXPECT_NEAR(control_.critical(), 2e-9, 1e-12) << "2 m/c for a dashpot alone";
+}
+
+TEST_F(TimeStep, IgnoresTheRatesOfEnginesOnOtherGroups) {
+  /// Stiff where the body with the id 1 is.
+  class Field final : public Engine {
+   public:
+    void declare(Parameters&) override {}
+    Phase phase() const override { return Phase::forces; }
+    EngineRates rates(const World& world) const override {
+      return {.stiffness = std::ranges::find(world.ids(), 1u) != world.ids().end() ? 1e18 : 0, .damping = 0};
+    }
+  } field;
+  state_.settings.time_step.steps_per_impact = 0;
+  state_.bodies.groups = {{"first", 0}, {"second", 1}};
+  state_.settings.groups = {"first", "second"};
+  const double without = (set(), control_.critical());
+  state_.settings.force_engines = {{&field, {true, false}}};
+  set();
+  EXPECT_EQ(control_.critical(), without);
+  state_.settings.force_engines = {{&field, {false, true}}};
+  set();
+  EXPECT_NEAR(control_.critical(), 2e-9, 1e-11);
+  state_.settings.force_engines = {{&field, {}}};
+  set();
+  EXPECT_NEAR(control_.critical(), 2e-9, 1e-11);
 }
 
 TEST_F(TimeStep, WithoutBodiesIsThatOfTheGroups) {

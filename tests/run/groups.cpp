@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "run/group_view.hpp"
+#include "grit/testing/fake_world.hpp"
+#include "kernel/group_view.hpp"
 #include "support/clump.hpp"
 #include "support/notes.hpp"
 #include "support/scene.hpp"
@@ -193,6 +194,36 @@ TEST(Groups, ProbesSeeTheirGroups) {
   EXPECT_EQ(all.contacts().size(), 5u);
   EXPECT_LT((all.walls()[0].moment - t.world().walls()[0].moment).norm(), 1e-12 * t.world().walls()[0].moment.norm());
   EXPECT_DOUBLE_EQ(all.walls()[0].force.z(), t.world().walls()[0].force.z());
+}
+
+/// A world that counts what is read of it.
+class Counting final : public FakeWorld {
+ public:
+  std::span<const std::uint32_t> ids() const override { return ++of_ids, FakeWorld::ids(); }
+  std::span<const Row> velocities() const override { return ++of_velocities, FakeWorld::velocities(); }
+  std::span<const Contact> contacts() const override { return ++of_contacts, FakeWorld::contacts(); }
+  std::span<const BodyGroup> groups() const override { return all; }
+  std::vector<BodyGroup> all{{"grains", 0}, {"others", 2}, {"grains", 3}};
+  mutable int of_ids = 0, of_velocities = 0, of_contacts = 0;
+};
+
+TEST(Groups, NothingIsCopiedThatNoProbeAsksFor) {
+  Counting world;
+  for (int i = 0; i < 4; ++i) world.add({0.0019 * i, 0, 0}, 1e-3);
+  for (std::uint32_t i = 0; i < 3; ++i) world.add_contact(i, i + 1, {0.0019, 0, 0}, {1.0 + i, 0, 0});
+  GroupView grains({"grains"});
+  grains.update(world);
+  EXPECT_THAT(grains.ids(), testing::ElementsAre(0, 1, 3));
+  EXPECT_EQ(grains.positions().size(), 3u);
+  EXPECT_EQ(world.of_velocities, 0);
+  EXPECT_EQ(world.of_contacts, 0);
+  ASSERT_EQ(grains.contacts().size(), 1u) << "of bodies 0 and 1; 3 touches only the other group";
+  EXPECT_EQ(grains.contacts()[0].force.x(), 1);
+  EXPECT_EQ(world.of_contacts, 1) << "kept until the next update";
+  world.contact[0].force.x() = 5;
+  grains.update(world);
+  EXPECT_EQ(grains.contacts()[0].force.x(), 5);
+  EXPECT_EQ(world.of_contacts, 2);
 }
 
 TEST(Groups, AProbeOfAGroupInARun) {

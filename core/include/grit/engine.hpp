@@ -91,8 +91,8 @@ class Engine {
   virtual void forces(const World&, std::span<Row> /*force*/, std::span<Row> /*moment*/) const {}
   /// Called in phase `removal` for each sphere and clump at a position [m]: whether it leaves the simulation.
   virtual bool removes(const World&, const Vec3& /*centre*/) const { return false; }
-  /// Called in phase `forces` when the time step is set, at neighbour searches and after changes. The time step is
-  /// stable with these rates.
+  /// Called in phase `forces` when the time step is set, at neighbour searches and after changes, with a world of the
+  /// bodies on which the engine acts. The time step is stable with these rates.
   virtual EngineRates rates(const World&) const { return {}; }
   /// Passes each member that the engine keeps between steps to the archive, once. A resumed run is then identical to an
   /// uninterrupted one.

@@ -5,6 +5,7 @@
 
 #include "format/number.hpp"
 #include "kernel/failure.hpp"
+#include "kernel/group_view.hpp"
 
 namespace grit {
 namespace {
@@ -16,11 +17,22 @@ constexpr double renew_distance = 0.03, contact_distance = 0.015;
 // The time step is raised only by this factor or more, so that it does not follow every small change.
 constexpr double raise_when = 1.1;
 
+/// Rates of an engine over the bodies on which it acts.
+EngineRates rates_of(const ActingEngine& one, const State& state, const World& world) {
+  if (one.groups.empty()) return one.engine->rates(world);
+  std::vector<std::string> names;
+  for (std::size_t group = 0; group < one.groups.size(); ++group)
+    if (one.groups[group]) names.push_back(state.settings.groups[group]);
+  GroupView own(std::move(names));
+  own.update(world);
+  return one.engine->rates(own);
+}
+
 /// Demand of engines on bodies, added up.
 Demand demand_of_engines(const State& state, const World& world) {
   Demand all;
   for (const ActingEngine& one : state.settings.force_engines) {
-    const EngineRates rates = one.engine->rates(world);
+    const EngineRates rates = rates_of(one, state, world);
     all.spring += rates.stiffness, all.dashpot += rates.damping;
   }
   return all;

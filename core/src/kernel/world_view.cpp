@@ -16,7 +16,7 @@ bool acts(const ContactRow& row) { return row.moment.w >= 0 || row.force.w != 0;
 }  // namespace
 
 void WorldView::invalidate() {
-  net_step_ = contact_step_ = wall_contact_step_ = wall_step_ = clump_step_ = displacement_step_ = never;
+  net_step_ = contact_step_ = wall_contact_step_ = wall_step_ = clump_step_ = displacement_step_ = held_step_ = never;
 }
 
 void WorldView::find_net_forces(std::size_t chunk) const {
@@ -62,8 +62,10 @@ std::span<const Vec3> WorldView::displacements() const {
 }
 
 std::span<const std::uint8_t> WorldView::held() const {
+  if (held_step_ == step()) return held_;
   const auto held = [](const MotionSettings& motion) { return motion.kept_translation() == Vec3::Ones(); };
   held_.clear();
+  held_step_ = step();
   if (!state_.settings.any_motion(held)) return held_;
   for (std::size_t i = 0; i < count(); ++i) held_.push_back(held(state_.motion_of(i)));
   return held_;

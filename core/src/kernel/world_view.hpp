@@ -20,8 +20,8 @@ class WorldView final : public World {
 
   /// After a change of state: everything is recomputed on demand.
   void invalidate();
-  /// The same for forces and quantities that depend on them.
-  void invalidate_forces() { net_step_ = clump_step_ = never; }
+  /// The same for forces and quantities that depend on them, and for settings.
+  void invalidate_forces() { net_step_ = clump_step_ = held_step_ = never; }
 
   double time() const override { return state_.time.time; }
   std::uint64_t step() const override { return state_.time.step; }
@@ -75,7 +75,7 @@ class WorldView final : public World {
   mutable std::vector<WallView> walls_;
   // Step at which each was computed.
   mutable std::uint64_t net_step_ = never, contact_step_ = never, wall_contact_step_ = never, wall_step_ = never,
-                        clump_step_ = never, displacement_step_ = never;
+                        clump_step_ = never, displacement_step_ = never, held_step_ = never;
 };
 
 }  // namespace grit

@@ -12,7 +12,7 @@
 #include "description/placed_error.hpp"
 #include "kernel/stopwatch.hpp"
 #include "plugins/component_archive.hpp"
-#include "run/group_view.hpp"
+#include "kernel/group_view.hpp"
 #include "run/recorder.hpp"
 #include "run/schedule.hpp"
 
