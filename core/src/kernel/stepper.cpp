@@ -93,6 +93,7 @@ void Stepper::rebuild() {
                                order);
   bounds_.rebuild(state_);
   arrivals_.clear();
+  view_.invalidate();  // engines may have read bodies in their former order
   time_step_.set(state_, view_, bounds_, passes_);
 }
 
