@@ -12,15 +12,18 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Surface of one sector: the top of the highest grain in each ring of one mean diameter, above the base.
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Surface of one sector: the top of the highest grain in each ring of one mean diameter, above the base; NaN in a ring
+/// without a grain.
 struct Surface {
   double width;  // of a ring [m]
   std::vector<double> height;
 
   void add(double distance, double top) {
     const auto ring = static_cast<std::size_t>(distance / width);
-    if (ring >= height.size()) height.resize(ring + 1, 0);
-    height[ring] = std::max(height[ring], top);
+    if (ring >= height.size()) height.resize(ring + 1, nan);
+    height[ring] = std::fmax(height[ring], top);
   }
   double radius(std::size_t ring) const { return (static_cast<double>(ring) + 0.5) * width; }
 };
@@ -30,11 +33,11 @@ double angle_of(const Surface& surface, double low, double high) {
   double count = 0, r = 0, h = 0, rr = 0, rh = 0;
   for (std::size_t ring = 0; ring < surface.height.size(); ++ring) {
     const double height = surface.height[ring], radius = surface.radius(ring);
-    if (height < low || height > high) continue;
+    if (!(height >= low && height <= high)) continue;
     ++count, r += radius, h += height, rr += radius * radius, rh += radius * height;
   }
   const double spread = count * rr - r * r;
-  if (count < 3 || !(spread > 0)) return std::numeric_limits<double>::quiet_NaN();
+  if (count < 3 || !(spread > 0)) return nan;
   return std::atan(-(count * rh - r * h) / spread);
 }
 
@@ -92,7 +95,7 @@ void Heap::sample(const World& world, ChannelValues& values) {
     const double angle = angle_of(surfaces[sector], lower * highest, upper * highest);
     if (std::isfinite(angle)) ++count, sum += angle, squares += angle * angle;
   }
-  const double nan = std::numeric_limits<double>::quiet_NaN(), mean = count > 0 ? sum / count : nan;
+  const double mean = count > 0 ? sum / count : nan;
   values["angle"] = mean;
   values["angle_deviation"] = count > 1 ? std::sqrt(std::max(0.0, squares - count * mean * mean) / (count - 1)) : nan;
   values["height"] = highest, values["radius"] = reach;
