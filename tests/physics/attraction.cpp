@@ -127,30 +127,63 @@ TEST(Attraction, BallsFallThatAreTooHeavy) {
   EXPECT_LT(trial.position(0).z(), -1.1 * radius);
 }
 
-/// A bond that is stretched over more than the skins, through many neighbour searches.
+/// A bond that is stretched over more than the skins, through many neighbour searches, until it breaks. Coming back,
+/// the bodies attract each other only after their surfaces have touched again.
 TEST(Attraction, NeighbourListsIncludeTheReach) {
   const double strength = 0.4 * stiffness / (std::numbers::pi * radius), reach = 0.4 * radius, speed = 0.02;
   for (const bool wall : {false, true}) {
-    std::vector<Grain> balls{{{0, 0, (1 - 1e-9) * radius}, radius, {0, 0, speed}}};
-    if (!wall) balls.push_back({{0, 0, -(1 - 1e-9) * radius}, radius, {0, 0, -speed}});
-    Description d = grains("linear-cohesive", cohesive(strength), balls);
-    d["engines"]["hold"] = {{"type", "hold"}, {"translation", "xyz"}};
-    if (wall) d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+    Description d =
+        grains("linear-cohesive", cohesive(strength), {{{0, 0, (1 - 1e-9) * radius}, radius, {0, 0, speed}}});
+    const auto moving = [](const char* group, double velocity) {
+      return Description{{"type", "prescribed-motion"}, {"groups", {group}}, {"velocity", {0, 0, velocity}}};
+    };
+    d["engines"]["up"] = moving("grains", speed);
+    if (wall) {
+      d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+    } else {
+      d["bodies"]["below"] = d["bodies"]["grains"];
+      d["bodies"]["below"]["source"]["bodies"][0]["position"] = {0, 0, -(1 - 1e-9) * radius};
+      d["engines"]["down"] = moving("below", -speed);
+    }
+    for (const auto& [name, sign] : {std::pair("back", -1.0), std::pair("out", 1.0)}) {
+      Description stage = d["stages"][0];
+      stage["name"] = name;
+      stage["change"]["engines"]["up"]["velocity"] = {0, 0, sign * speed};
+      if (!wall) stage["change"]["engines"]["down"]["velocity"] = {0, 0, -sign * speed};
+      d["stages"].push_back(stage);
+    }
     d["domain"] = {{"low", {-0.02, -0.02, -0.02}}, {"high", {0.02, 0.02, 0.02}}};
     d["time_step"] = {{"value", 1e-5}, {"allow_unstable", true}};
     Trial trial(d);
-    const double closing = wall ? speed : 2 * speed;
-    double gap = 0;
-    for (int step = 1; gap < 1.1 * reach; ++step) {
-      if (step % 7 == 0) trial.kernel().request_rebuild();
+    const double closing = wall ? speed : 2 * speed, precision = 1e-6 * stiffness * reach;
+    double gap = -(wall ? 1e-9 : 2e-9) * radius;
+    int steps = 0;
+    const auto step = [&](double sign) {
+      if (++steps % 7 == 0) trial.kernel().request_rebuild();
       trial.step();
-      gap = step * 1e-5 * closing - (wall ? 1e-9 : 2e-9) * radius;
+      gap += sign * 1e-5 * closing;
+    };
+    const auto force = [&] {
       const auto contacts = trial.world().contacts();
-      ASSERT_EQ(contacts.size(), gap < reach ? 1u : 0u) << gap / reach;
-      if (gap < reach) ASSERT_NEAR(contacts[0].normal_force, -stiffness * gap, 1e-6 * stiffness * reach);
+      return contacts.empty() ? 0 : contacts[0].normal_force;
+    };
+    while (gap < 1.1 * reach) {
+      step(1);
+      ASSERT_EQ(trial.world().contacts().size(), gap < reach ? 1u : 0u) << gap / reach;
+      ASSERT_NEAR(force(), gap < reach ? -stiffness * gap : 0, precision);
     }
-    // Coming back, it acts when the surfaces touch.
     EXPECT_EQ(trial.kernel().state().pairs.touching_count(), 0u);
+    trial.begin_stage(1, "back");
+    while (gap > -0.01 * radius) {
+      step(-1);
+      ASSERT_NEAR(force(), gap < 0 ? -stiffness * gap : 0, precision) << "the bond is broken; " << gap / reach;
+    }
+    EXPECT_EQ(trial.world().contacts().size(), 1u);
+    trial.begin_stage(2, "out");
+    while (gap < 0.5 * reach) {
+      step(1);
+      ASSERT_NEAR(force(), -stiffness * gap, precision) << "the surfaces have touched; " << gap / reach;
+    }
   }
 }
 

@@ -144,6 +144,25 @@ TEST(Groups, EnginesActOnTheirGroups) {
   EXPECT_LT(std::abs(t.world().energies().closure_error), 1e-6 * std::abs(t.world().energies().engines));
 }
 
+TEST(Groups, ForcesOfPluginsOnOthersAreDiscarded) {
+  for (const bool clumped : {false, true}) {
+    Description d = two_groups({{{0, 0, 0}, radius}}, {{{0.1, 0, 0}, radius}});
+    if (clumped) make_clumps(d, boomerang());
+    d["engines"]["field"] = {{"type", "force-field"}, {"z", "5"}, {"groups", {"others"}}};
+    d["time_step"]["value"] = 1e-6;
+    Trial t(d, 1, BodyState::energy);
+    t.world().energies();
+    t.step(1000);
+    const double speed = 5 * t.world().time();
+    for (const std::uint32_t id : t.world().ids()) {
+      const double expected = t.world().group_of(id) == "others" ? speed : 0;
+      EXPECT_LT((t.velocity(id) - Vec3(0, 0, expected)).norm(), 1e-12) << id;
+    }
+    const Energies now = t.world().energies();
+    EXPECT_NEAR(now.engines, now.kinetic, 1e-9 * now.kinetic);
+  }
+}
+
 TEST(Groups, WallsActOnTheirGroups) {
   Description d = two_groups({{{0, 0, 1.5 * radius}, radius}}, {{{0.1, 0, 1.5 * radius}, radius}});
   d["engines"]["gravity"] = gravity();
@@ -224,6 +243,36 @@ TEST(Groups, NothingIsCopiedThatNoProbeAsksFor) {
   grains.update(world);
   EXPECT_EQ(grains.contacts()[0].force.x(), 5);
   EXPECT_EQ(world.of_contacts, 2);
+}
+
+/// A conical heap beside a pillar of another group, which is higher.
+TEST(Groups, AHeapBesideOtherBodies) {
+  FakeWorld sand;
+  constexpr double slope = 0.5, height = 0.01;
+  for (int ring = 0; ring < 18; ++ring)
+    for (int k = 0; k < 32; ++k) {
+      const double angle = 2 * std::numbers::pi * (k + 0.5) / 32, r = (2 * ring + 1) * 0.5e-3;
+      sand.add({r * std::cos(angle), r * std::sin(angle), height - slope * r - 0.5e-3}, 0.5e-3);
+    }
+  const auto heap_end = static_cast<std::uint32_t>(sand.id.size());
+  for (std::uint32_t i = 0; i + 1 < heap_end; ++i) sand.add_contact(i, i + 1, {1e-3, 0, 0}, {1, 0, 0});
+  Counting all;
+  static_cast<FakeWorld&>(all) = sand;
+  all.all = {{"sand", 0}, {"pillar", heap_end}};
+  for (int i = 0; i < 20; ++i) all.add({0.03, 0, 2e-3 * i}, 1e-3);
+  for (std::uint32_t i = heap_end; i + 1 < all.id.size(); ++i) all.add_contact(i, i + 1, {0, 0, 2e-3}, {0, 0, 1});
+  GroupView seen({"sand"});
+  seen.update(all);
+  const auto heap = installed().make<Probe>("heap");
+  const auto channel_value = [&](const World& world, const std::string& name) {
+    ChannelValues values("the heap", heap->channels());
+    heap->sample(world, values);
+    return values.list(name)[0];
+  };
+  EXPECT_NEAR(channel_value(seen, "angle"), std::atan(slope), 1e-9);
+  for (const char* channel : {"angle", "angle_deviation", "height", "radius"})
+    EXPECT_EQ(channel_value(seen, channel), channel_value(sand, channel)) << channel;
+  EXPECT_NE(channel_value(all, "height"), channel_value(sand, "height"));
 }
 
 TEST(Groups, AProbeOfAGroupInARun) {
