@@ -114,6 +114,16 @@ TEST(Lattice, IsCountedWithoutBeingMade) {
   }
 }
 
+TEST(Lattice, IsCountedBeyondAllIntegers) {
+  const LatticeSource tiny = lattice("simple-cubic", Vec3::Zero(), Vec3::Ones(), 1e-12);
+  EXPECT_NEAR(count_of_lattice(tiny, {}), 1e36, 1e25);
+  Description d = description("linear-rolling", {{"contact_modulus", 1e6}}, {});
+  d["bodies"]["grains"]["source"] = {{"type", "lattice"}, {"low", {0, 0, 0}}, {"high", {1, 1, 1}}, {"diameter", 1e-12}};
+  const Scene scene = scene_of(d);
+  const std::shared_ptr<const BodyKind> sphere = scene.description->bodies.at("grains").kind.make();
+  EXPECT_GE(body_count(*scene.description, "grains", sphere), 1'000'000'000'000u);
+}
+
 TEST(Lattice, ReportsWhatDoesNotFit) {
   const auto message = [](const LatticeSource& source, const Cell& cell) -> std::string {
     try {
@@ -130,8 +140,10 @@ TEST(Lattice, ReportsWhatDoesNotFit) {
   EXPECT_THAT(message(lattice("bcc", {0, 0, -1}, cell.high, 1), cell), HasSubstr("lattice: the box ( 0  0 -1) … "));
   EXPECT_EQ(message(lattice("bcc", Vec3::Zero(), Vec3(5, 0.9, 5), 1), open_cell),
             "lattice: no body of diameter 1 m fits into the box; use a larger box or a smaller diameter");
-  EXPECT_THAT(message(lattice("fcc", Vec3::Zero(), Vec3::Ones(), 1e-5), open_cell),
-              HasSubstr("bodies; allowed are up to 4e9"));
+  for (const double diameter : {1e-5, 1e-12, 1e-200})
+    EXPECT_THAT(message(lattice("fcc", Vec3::Zero(), Vec3::Ones(), diameter), open_cell),
+                HasSubstr("bodies; allowed are up to 4e9"))
+        << diameter;
 }
 
 /// A scene of close-packed spheres that overlap a little, periodic in all directions.

@@ -68,6 +68,12 @@ TEST(Stream, EndsAtItsLimits) {
   EXPECT_EQ(entered({{"mass", 10.5 * mass}, {"sizes", {{"type", "list"}, {"diameters", {2e-3}}}}}), 10u);
 }
 
+TEST(Stream, IsCountedBeyondAllIntegers) {
+  const Scene scene = scene_of(stream({{"number_rate", 200}, {"mass", 1e300}}));
+  const std::shared_ptr<const BodyKind> kind = scene.description->bodies.at("grains").kind.make();
+  EXPECT_EQ(body_count(*scene.description, "grains", kind), 1'000'000'000'000'000u);
+}
+
 TEST(Stream, BodiesNeverOverlapWhenTheyEnter) {
   // A dense stream into a box that fills up: from some time on bodies wait.
   Description d = stream({{"number_rate", 20000}});

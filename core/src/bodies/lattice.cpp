@@ -36,32 +36,32 @@ RepeatedCell repeated_cell(const std::string& kind) {
 
 double spacing_of(const LatticeSource& source) { return source.spacing.value_or(source.diameter); }
 
-/// Number of positions along an axis that begin at a fraction of the repeat length.
-std::int64_t positions_along(double length, double repeat, double fraction, double diameter, bool wrapped) {
-  if (wrapped) return std::llround(length / repeat);
+/// Number of positions along an axis that begin at a fraction of the repeat length; it may be beyond all integers.
+double positions_along(double length, double repeat, double fraction, double diameter, bool wrapped) {
+  if (wrapped) return std::round(length / repeat);
   const double free = (length - diameter) / repeat + round_off - fraction;
-  return free < 0 ? 0 : static_cast<std::int64_t>(std::floor(free)) + 1;
+  return free < 0 ? 0 : std::floor(free) + 1;
 }
 
 }  // namespace
 
 Vec3 repeat_lengths(const LatticeSource& source) { return spacing_of(source) * repeated_cell(source.kind).lengths; }
 
-std::size_t count_of_lattice(const LatticeSource& source, const std::array<bool, 3>& periodic) {
+double count_of_lattice(const LatticeSource& source, const std::array<bool, 3>& periodic) {
   const Vec3 repeat = repeat_lengths(source);
   double count = 0;
   for (const Vec3& position : repeated_cell(source.kind).positions) {
     double all = 1;
     for (int k = 0; k < 3; ++k)
-      all *= static_cast<double>(positions_along(source.high[k] - source.low[k], repeat[k], position[k],
-                                                 source.diameter, periodic[static_cast<std::size_t>(k)]));
+      all *= positions_along(source.high[k] - source.low[k], repeat[k], position[k], source.diameter,
+                             periodic[static_cast<std::size_t>(k)]);
     count += all;
   }
-  return static_cast<std::size_t>(count);
+  return count;
 }
 
 std::vector<Row> make_lattice(const LatticeSource& source, const Cell& cell) {
-  constexpr std::size_t most = 4'000'000'000;
+  constexpr double most = 4e9;
   const auto wrapped = wrapped_axes("lattice", {source.low, source.high}, cell);
   Vec3 repeat = repeat_lengths(source);
   const Vec3 size = source.high - source.low;
@@ -71,30 +71,29 @@ std::vector<Row> make_lattice(const LatticeSource& source, const Cell& cell) {
     if (std::abs(size[k] - times * repeat[k]) > misfit * size[k])
       throw Error("lattice: the box is " + number(size[k] / repeat[k]) + " repeat lengths of " + number(repeat[k]) +
                   " m long along the periodic axis " + "xyz"[k] + "; use a whole number of them, such as " +
-                  std::to_string(static_cast<std::int64_t>(times)) + " with a spacing of " +
+                  fmt::format("{:.0f}", times) + " with a spacing of " +
                   fmt::format("{:.10g}", spacing_of(source) * size[k] / (times * repeat[k])) + " m");
     repeat[k] = size[k] / times;
   }
-  const std::size_t count = count_of_lattice(source, wrapped);
+  const double count = count_of_lattice(source, wrapped);
   if (count == 0)
     throw Error("lattice: no body of diameter " + number(source.diameter) +
                 " m fits into the box; use a larger box or a smaller diameter");
   if (count > most)
-    throw Error("lattice: " + number(static_cast<double>(count)) +
-                " bodies; allowed are up to 4e9: use a smaller box or a larger spacing");
+    throw Error("lattice: " + number(count) + " bodies; allowed are up to 4e9: use a smaller box or a larger spacing");
 
   const RepeatedCell repeated = repeated_cell(source.kind);
   const double radius = 0.5 * source.diameter;
   const auto along = [&](int axis, const Vec3& position) {
-    return positions_along(size[axis], repeat[axis], position[axis], source.diameter,
-                           wrapped[static_cast<std::size_t>(axis)]);
+    return static_cast<std::int64_t>(positions_along(size[axis], repeat[axis], position[axis], source.diameter,
+                                                     wrapped[static_cast<std::size_t>(axis)]));
   };
   const auto at = [&](int axis, std::int64_t index, const Vec3& position) {
     const double place = source.low[axis] + radius + (static_cast<double>(index) + position[axis]) * repeat[axis];
     return wrapped[static_cast<std::size_t>(axis)] && place >= source.high[axis] ? place - size[axis] : place;
   };
   std::vector<Row> bodies;
-  bodies.reserve(count);
+  bodies.reserve(static_cast<std::size_t>(count));
   std::array<std::int64_t, 3> most_cells{};
   for (int k = 0; k < 3; ++k)
     for (const Vec3& position : repeated.positions)

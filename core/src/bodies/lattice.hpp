@@ -18,7 +18,7 @@ std::vector<Row> make_lattice(const LatticeSource& source, const Cell& cell);
 /// Repeat lengths of the lattice along the axes [m].
 Vec3 repeat_lengths(const LatticeSource& source);
 
-/// Number of bodies of make_lattice(), as far as it can be made.
-std::size_t count_of_lattice(const LatticeSource& source, const std::array<bool, 3>& periodic);
+/// Number of bodies of make_lattice(), as far as it can be made; exact up to 2^53.
+double count_of_lattice(const LatticeSource& source, const std::array<bool, 3>& periodic);
 
 }  // namespace grit

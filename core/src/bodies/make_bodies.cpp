@@ -18,6 +18,7 @@
 #include "bodies/packing_file.hpp"
 #include "bodies/sizes.hpp"
 #include "bodies/stream.hpp"
+#include "bodies/whole_count.hpp"
 #include "description/placed_error.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
@@ -269,7 +270,7 @@ std::size_t body_count(const SceneDescription& scene, const std::string& name,
   if (const auto* cloud = std::get_if<CloudSource>(&group.source.value()))
     return spheres * static_cast<std::size_t>(cloud->count);
   if (const auto* lattice = std::get_if<LatticeSource>(&group.source.value()))
-    return spheres * count_of_lattice(*lattice, spanned_axes(*lattice, scene.domain));
+    return whole_count(static_cast<double>(spheres) * count_of_lattice(*lattice, spanned_axes(*lattice, scene.domain)));
   const auto count = [&] { return read_bodies(std::get<FileSource>(group.source.value())).size(); };
   return spheres * read_at_start(name, group, count);
 }

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "bodies/sizes.hpp"
+#include "bodies/whole_count.hpp"
 
 namespace grit {
 namespace {
@@ -139,7 +140,7 @@ std::size_t expected_count(const StreamSource& source, const GroupBuilder& build
   if (source.mass) count = std::min(count, *source.mass / mean);
   if (source.time && source.number_rate) count = std::min(count, *source.number_rate * *source.time);
   if (source.time && source.mass_rate) count = std::min(count, *source.mass_rate * *source.time / mean);
-  return std::isfinite(count) ? static_cast<std::size_t>(count) : 0;
+  return std::isfinite(count) ? whole_count(count) : 0;
 }
 
 Region bounds_of(const StreamSource& source) {
