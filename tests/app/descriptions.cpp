@@ -826,6 +826,29 @@ TEST(Descriptions, CheckReportsADepthWithMoreContactsThanScatterJustifies) {
       << "a floor that ends";
 }
 
+TEST(Descriptions, CheckWarnsOfAttractionWithinAStep) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto check = [&](std::vector<std::string> sets) {
+    std::vector<std::string> words{
+        "check", "two.json", "--set", "/contacts/type=linear-cohesive", "--set", "/materials/sand/contact_modulus=1e8"};
+    for (const auto& set : sets) words.insert(words.end(), {"--set", set});
+    return grit_in(folder.path(), words).out;
+  };
+  // The reach is π R times strength over modulus.
+  EXPECT_THAT(
+      check({"/materials/sand/tensile_strength=1e4"}),
+      AllOf(HasSubstr("\nwarning\n  /time_step: bodies attract each other up to 3.1e-07 m apart, but may move by "
+                      "4e-05 m in a step"),
+            HasSubstr("/time_step/max_displacement\n")));
+  const auto quiet = testing::Not(HasSubstr("attract each other"));
+  EXPECT_THAT(check({"/materials/sand/tensile_strength=0"}), quiet);
+  EXPECT_THAT(check({"/materials/sand/tensile_strength=1e4", "/time_step/max_displacement=3e-4"}), quiet);
+  EXPECT_THAT(check({"/materials/sand/tensile_strength=2e6"}), quiet);
+  EXPECT_THAT(check({"/materials/sand/tensile_strength=1e4", "/time_step/value=1e-9"}),
+              HasSubstr("/time_step/value\n"));
+}
+
 TEST(Descriptions, CheckReportsAnExcessDepthBetweenPanesOfAScenario) {
   const std::string file = GRIT_SOURCE_DIR "/sims/direct-shear/quick.json";
   const OwnFolder folder;

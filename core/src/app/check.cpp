@@ -22,6 +22,7 @@
 #include "lint/excess_depth.hpp"
 #include "lint/installed_studies.hpp"
 #include "lint/repeated_geometry.hpp"
+#include "lint/short_reach.hpp"
 #include "lint/soft_contacts.hpp"
 #include "lint/unmoved_bodies.hpp"
 #include "lint/unused_materials.hpp"
@@ -150,7 +151,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
               << ") if stages run to their limits";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
   std::vector<UnusedSetting> warnings;
-  for (const auto& warning : {unmoved_bodies(scene, kernel.world()), endless_fall(scene)})
+  for (const auto& warning : {unmoved_bodies(scene, kernel.world()), endless_fall(scene), short_reach(kernel)})
     if (warning) warnings.push_back(*warning);
   std::ranges::move(tensile_targets(scene, live.geometries().all()), std::back_inserter(warnings));
   std::ranges::move(missed_targets(scene), std::back_inserter(warnings));
