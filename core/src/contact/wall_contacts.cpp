@@ -425,6 +425,8 @@ double WallContacts::force_ahead(std::size_t wall, const WallSurface& surface, c
     const Stiffness k = law.stiffness(size, bodies.material[contact.body], surface.material);
     const double dashpot = 2 * k.damping_ratio * std::sqrt(k.normal / size.inverse_mass_a),
                  closing = contact.normal.dot(xyz(bodies.velocity[contact.body]) - velocity);
+    // Attraction is left out: contacts to come, which it would draw in, count with their repulsion alone, so that a
+    // servo approaches more slowly. Where contacts in tension close, the force passes the target by their pull at most.
     sum += std::max(0.0, k.normal * contact.overlap + dashpot * closing);
   }
   return sum;

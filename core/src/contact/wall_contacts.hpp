@@ -89,8 +89,8 @@ class WallContacts {
   /// Loads on all walls, summed chunk by chunk.
   void loads(std::span<WallLoad> loads) const;
   /// Estimate of the normal force on a wall [N] at the pose `there` with `velocity` [m/s] and bodies as they are now:
-  /// of springs, linear with their present stiffness, and of dashpots. Considers `all` bodies, or only those that it
-  /// may come into contact with before the next search.
+  /// of springs, linear with their present stiffness, and of dashpots, without attraction. Considers `all` bodies, or
+  /// only those that it may come into contact with before the next search.
   double force_ahead(std::size_t wall, const WallSurface& surface, const Pose& there, const Vec3& velocity,
                      const ContactLaw& law, const Bodies& bodies, std::span<const std::uint16_t> group, bool all) const;
 
