@@ -79,6 +79,8 @@ class Geometry {
   /// Index of the triangle of triangles() on which a feature lies, for a surface that consists of them; none for other
   /// shapes, of which they are pictures.
   virtual std::optional<std::uint32_t> triangle_of(std::uint32_t /*feature*/) const { return {}; }
+  /// Whether the surface consists of its triangles, as that of a mesh: triangle_of() then names one for each feature.
+  bool is_triangulated() const { return triangle_of(0).has_value(); }
 };
 
 }  // namespace grit

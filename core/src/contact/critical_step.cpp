@@ -159,7 +159,7 @@ void each_group_of_facets(std::size_t chunk, const CriticalStep::Instant& at, do
   std::vector<SurfaceContact> found;
   for (std::size_t w = 0; w < at.surfaces.size(); ++w) {
     const WallSurface& wall = at.surfaces[w];
-    if (!wall.geometry->triangle_of(0)) continue;
+    if (!wall.geometry->is_triangulated()) continue;
     found.clear();
     at.walls.each_near(chunk, at.bodies, wall, w, ahead, [&](const SurfaceContact& one) { found.push_back(one); });
     for (std::size_t begin = 0, end = 0; begin < found.size(); begin = end) {

@@ -15,7 +15,7 @@ void FacetsProbe::declare(Parameters& p) {
 void FacetsProbe::prepare(const World& world) {
   index_ = wall_index(world, wall, "wall");
   const Geometry* const geometry = world.walls()[index_].geometry;
-  if (geometry == nullptr || !geometry->triangle_of(0))
+  if (geometry == nullptr || !geometry->is_triangulated())
     throw ParameterError(
         {{"wall", "wall \"" + wall + "\", whose surface does not consist of triangles", "a wall of type mesh"}});
 }
