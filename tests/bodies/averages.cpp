@@ -169,6 +169,27 @@ TEST(Equilibrium, ComparesNetForcesWithContactForces) {
   EXPECT_NEAR(equilibrium(world).unbalanced_force, 3.0 / 15, 1e-14);
 }
 
+/// A world with clumps, which FakeWorld does not have.
+struct WithClumps final : FakeWorld {
+  std::vector<ClumpView> clump;
+  std::vector<std::uint32_t> of;
+  std::span<const ClumpView> clumps() const override { return clump; }
+  std::span<const std::uint32_t> clump_of() const override { return of; }
+};
+
+TEST(Equilibrium, IgnoresClumpsOfInfiniteMass) {
+  WithClumps world;
+  const auto a = world.add(Vec3::Zero(), 0.5), b = world.add(Vec3(1, 0, 0), 0.5);
+  ClumpView one{};
+  one.velocity = one.spin = one.momentum = one.moment = one.centre = Vec3::Zero();
+  one.axes = Mat3::Identity(), one.inertia = Vec3::Ones(), one.mass = 1, one.radius = 0.5, one.force = {3, 0, 0};
+  world.clump = {one, one};
+  world.clump[1].mass = infinity, world.clump[1].force = {100, 0, 0};
+  world.of = {0, 1};
+  world.add_contact(a, b, Vec3(1, 0, 0), Vec3(10, 0, 0));
+  EXPECT_NEAR(equilibrium(world).unbalanced_force, 0.3, 1e-14);
+}
+
 TEST(Equilibrium, IgnoresFixedBodies) {
   FakeWorld world;
   const auto a = world.add(Vec3::Zero(), 0.5, Vec3(1, 0, 0)), b = world.add(Vec3(1, 0, 0), 0.5, Vec3(9, 0, 0));

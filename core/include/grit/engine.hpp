@@ -44,18 +44,18 @@ struct MotionSettings {
     return prescribed || any(held_translation) || any(held_rotation);
   }
   /// 1 along axes whose velocity engines keep or prescribe, 0 along others.
-  Vec3 kept_translation() const { return prescribed ? Vec3(Vec3::Ones()) : ones(held_translation); }
+  Vec3 constrained_translation() const { return prescribed ? Vec3(Vec3::Ones()) : ones(held_translation); }
   /// The same about axes of rotation.
-  Vec3 kept_rotation() const { return prescribed ? Vec3(Vec3::Ones()) : ones(held_rotation); }
+  Vec3 constrained_rotation() const { return prescribed ? Vec3(Vec3::Ones()) : ones(held_rotation); }
   /// 1 along axes along which forces accelerate bodies, 0 along others.
   Vec3 free_translation() const {
-    Vec3 free = Vec3::Ones() - kept_translation();
+    Vec3 free = Vec3::Ones() - constrained_translation();
     if (flat) free[*flat] = 0;
     return free;
   }
   /// The same about axes of rotation.
   Vec3 free_rotation() const {
-    const Vec3 free = Vec3::Ones() - kept_rotation();
+    const Vec3 free = Vec3::Ones() - constrained_rotation();
     return flat ? Vec3(free.cwiseProduct(Vec3::Unit(*flat))) : free;
   }
   bool operator==(const MotionSettings&) const = default;

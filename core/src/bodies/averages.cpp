@@ -48,10 +48,10 @@ double share_inside(const Vec3& start, const Vec3& branch, const Region& region)
   return std::max(to - from, 0.0);
 }
 
-/// Which bodies and clumps forces may move.
+/// Which bodies and clumps forces may move: those of finite mass that no engine holds.
 class Movable {
  public:
-  explicit Movable(const World& world) : velocities_(world.velocities()), held_(world.held()) {
+  explicit Movable(const World& world) : velocities_(world.velocities()), clumps_(world.clumps()), held_(world.held()) {
     if (held_.empty()) return;
     const auto clump_of = world.clump_of();
     held_clumps_.resize(world.clumps().size());
@@ -59,10 +59,13 @@ class Movable {
       if (clump_of[i] != no_clump) held_clumps_[clump_of[i]] = held_[i] != 0;
   }
   bool body(std::size_t i) const { return velocities_[i].w > 0 && (held_.empty() || held_[i] == 0); }
-  bool clump(std::size_t c) const { return held_clumps_.empty() || !held_clumps_[c]; }
+  bool clump(std::size_t c) const {
+    return std::isfinite(clumps_[c].mass) && (held_clumps_.empty() || !held_clumps_[c]);
+  }
 
  private:
   std::span<const Row> velocities_;
+  std::span<const ClumpView> clumps_;
   std::span<const std::uint8_t> held_;
   std::vector<bool> held_clumps_;
 };

@@ -110,8 +110,8 @@ double EnergyBalance::power_of_engines(std::size_t chunk) const {
     const MotionSettings& motion = state_.motion_of(i);
     if (!motion.holds()) continue;
     const Vec3 force = xyz(state_.sum[i].force) + motion.gravity / bodies.velocity[i].w;
-    power -= motion.kept_translation().cwiseProduct(force).dot(xyz(bodies.velocity[i])) +
-             motion.kept_rotation().cwiseProduct(xyz(state_.sum[i].moment)).dot(xyz(bodies.spin[i]));
+    power -= motion.constrained_translation().cwiseProduct(force).dot(xyz(bodies.velocity[i])) +
+             motion.constrained_rotation().cwiseProduct(xyz(state_.sum[i].moment)).dot(xyz(bodies.spin[i]));
   }
   for (std::size_t c = clumps.first; c < clumps.last; ++c) {
     const Clump& clump = bodies.clumps.clump[c];
@@ -119,8 +119,8 @@ double EnergyBalance::power_of_engines(std::size_t chunk) const {
     if (!motion.holds()) continue;
     const ClumpLoad load = load_of(clump, bodies, state_.sum.data());
     const Vec3 force = load.force + motion.gravity / clump.inverse_mass;
-    power -= motion.kept_translation().cwiseProduct(force).dot(clump.velocity) +
-             motion.kept_rotation().cwiseProduct(load.moment).dot(clump.spin);
+    power -= motion.constrained_translation().cwiseProduct(force).dot(clump.velocity) +
+             motion.constrained_rotation().cwiseProduct(load.moment).dot(clump.spin);
   }
   return power;
 }

@@ -63,7 +63,7 @@ std::span<const Vec3> WorldView::displacements() const {
 
 std::span<const std::uint8_t> WorldView::held() const {
   if (held_step_ == step()) return held_;
-  const auto held = [](const MotionSettings& motion) { return motion.kept_translation() == Vec3::Ones(); };
+  const auto held = [](const MotionSettings& motion) { return motion.constrained_translation() == Vec3::Ones(); };
   held_.clear();
   held_step_ = step();
   if (!state_.settings.any_motion(held)) return held_;

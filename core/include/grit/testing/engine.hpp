@@ -34,8 +34,8 @@ inline std::vector<double> acted(const Engine& engine, const World& world) {
     engine.settings(settings);
     all.assign(settings.gravity.begin(), settings.gravity.end());
     const RigidMotion motion = settings.prescribed.value_or(RigidMotion{});
-    for (const Vec3& v :
-         {settings.kept_translation(), settings.kept_rotation(), motion.velocity, motion.spin, motion.about})
+    for (const Vec3& v : {settings.constrained_translation(), settings.constrained_rotation(), motion.velocity,
+                          motion.spin, motion.about})
       all.insert(all.end(), v.begin(), v.end());
     all.insert(all.end(), {settings.local_damping, double(settings.flat.value_or(-1))});
     return all;
