@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bodies/regions.hpp"
 #include "grit/testing/fake_world.hpp"
 #include "kernel/group_view.hpp"
 #include "support/clump.hpp"

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "bodies/mesh_interior.hpp"
+#include "bodies/regions.hpp"
 #include "bodies/sizes.hpp"
 #include "grit/error.hpp"
 
@@ -265,9 +266,7 @@ BoundedShape shape_of(const BoxRegion& box, const Cell&) {
 
 BoundedShape shape_of(const SphereRegion& sphere, const Cell&) {
   const Vec3 reach = Vec3::Constant(sphere.radius);
-  const auto holds = [sphere](const Vec3& centre, double radius) {
-    return radius <= sphere.radius && (centre - sphere.centre).norm() <= sphere.radius - radius;
-  };
+  const auto holds = [sphere](const Vec3& centre, double radius) { return contains_sphere(sphere, centre, radius); };
   return {{sphere.centre - reach, sphere.centre + reach},
           {"sphere", 4.0 / 3.0 * std::numbers::pi * sphere.radius * sphere.radius * sphere.radius, holds}};
 }
@@ -282,11 +281,8 @@ BoundedShape shape_of(const CylinderRegion& cylinder, const Cell& cell) {
   const auto wrapped = wrapped_axes("cloud", all.bounds, cell);
   bool endless = false;
   for (int k = 0; k < 3; ++k) endless = endless || (std::abs(way[k]) == length && wrapped[static_cast<std::size_t>(k)]);
-  const auto holds = [=, start = cylinder.start, wall = cylinder.radius](const Vec3& centre, double radius) {
-    const Vec3 arm = centre - start;
-    const double along = arm.dot(axis);
-    if (!endless && !(along >= radius && along <= length - radius)) return false;
-    return radius <= wall && (arm - along * axis).norm() <= wall - radius;
+  const auto holds = [cylinder, endless](const Vec3& centre, double radius) {
+    return contains_sphere(cylinder, endless, centre, radius);
   };
   all.shape = {"cylinder", std::numbers::pi * cylinder.radius * cylinder.radius * length, holds};
   return all;

@@ -400,21 +400,6 @@ void HalfSpaceRegion::declare(Parameters& p) {
     if (!(normal.norm() > 0)) complain("normal", "a vector of length 0", "a direction");
   });
 }
-bool contains(const BoxRegion& region, const Vec3& point) {
-  return (point.array() >= region.low.array()).all() && (point.array() <= region.high.array()).all();
-}
-bool contains(const SphereRegion& region, const Vec3& point) {
-  return (point - region.centre).squaredNorm() <= region.radius * region.radius;
-}
-bool contains(const CylinderRegion& region, const Vec3& point) {
-  const Vec3 axis = region.end - region.start, arm = point - region.start;
-  const double along = arm.dot(axis) / axis.squaredNorm();
-  return along >= 0 && along <= 1 && (arm - along * axis).squaredNorm() <= region.radius * region.radius;
-}
-bool contains(const HalfSpaceRegion& region, const Vec3& point) {
-  return (point - region.point).dot(region.normal) <= 0;
-}
-
 void MeshRegion::declare(Parameters& p) {
   p.add("path", path).file().required().doc("STL file, ASCII or binary, of a closed surface");
   p.add("scale", scale).unit("m").required().above(0).doc("length of one file unit, e.g. \"1 mm\"");

@@ -160,11 +160,6 @@ struct HalfSpaceRegion {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
   void declare(Parameters& p);
 };
-/// Whether a point is inside, or on the boundary.
-bool contains(const BoxRegion& region, const Vec3& point);
-bool contains(const SphereRegion& region, const Vec3& point);
-bool contains(const CylinderRegion& region, const Vec3& point);
-bool contains(const HalfSpaceRegion& region, const Vec3& point);
 /// The inside of a closed surface.
 struct MeshRegion {
   static constexpr const char* type_name = "mesh";

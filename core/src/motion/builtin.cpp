@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "description/description.hpp"
+#include "bodies/regions.hpp"
 #include "grit/engine.hpp"
 #include "motion/drag.hpp"
 
