@@ -545,7 +545,7 @@ void MotionDescription::declare(Parameters& p) {
   p.add("surface_velocity", surface_velocity)
       .unit("m/s")
       .doc(
-          "velocity of the surface while the wall stays, as of a belt; bodies feel its part along the surface; it "
+          "velocity of the surface while the wall stays, as of a belt; contacts see its tangential component; it "
           "turns with the wall");
   p.add("surface_spin", surface_spin)
       .unit("rad/s")

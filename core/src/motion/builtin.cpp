@@ -47,7 +47,9 @@ class Hold final : public Engine {
     const std::vector<std::string> axes{"none", "x", "y", "z", "xy", "xz", "yz", "xyz"};
     p.add("rotation", rotation_)
         .one_of(axes)
-        .doc("axes about which spins stay constant; for clumps, the angular momentum about them");
+        .doc(
+            "axes about which spins stay constant; for clumps, the angular momentum about them, so that their spin "
+            "varies as they turn, since their moments of inertia differ");
     p.add("translation", translation_).one_of(axes).doc("axes along which velocities stay constant");
   }
   Phase phase() const override { return Phase::settings; }
@@ -97,8 +99,8 @@ class Sink final : public Engine {
     p.add("region", region_)
         .required()
         .doc(
-            "where bodies are removed: at the neighbour search after their centre has entered, within a fraction of a "
-            "diameter; they count as discharged");
+            "where bodies are removed: at the first neighbour search after the centre enters, that is within a fraction "
+            "of a diameter of travel; they count as discharged");
   }
   Phase phase() const override { return Phase::removal; }
   bool removes(const World&, const Vec3& centre) const override {
