@@ -99,7 +99,8 @@ class Sink final : public Engine {
     p.add("region", region_)
         .required()
         .doc(
-            "where bodies are removed: at the first neighbour search after the centre enters, that is within a fraction "
+            "where bodies are removed: at the first neighbour search after the centre enters, that is within a "
+            "fraction "
             "of a diameter of travel; they count as discharged");
   }
   Phase phase() const override { return Phase::removal; }
