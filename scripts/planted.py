@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants errors in copies of the contact laws and of the kernel, one at a time, and writes which physics tests fail:
+"""Plants errors in copies of the contact laws and of the kernel, one at a time, and writes which tests fail:
 docs/evidence/planted.md.
 
   planted.py [--only PART] [BUILD]      BUILD is build unless given; exit status 1 if no test fails with an error, or if
@@ -92,8 +92,26 @@ PARTS = {
     ]),
     'walls': (ROOT / 'core' / 'src' / 'contact', 'wall_contacts.cpp', [
         ('an edge that two faces share counts twice', '!work.found.empty()', 'false'),
+        ('the friction of a turntable has no moment', 'load.surface_moment += Vec3(px, py, pz).cross(shear) + xyz(moment);', ';'),
+    ]),
+    'wall-motion': (ROOT / 'core' / 'src' / 'motion', 'walls.cpp', [
+        ('a free rotation without the moment of its load', 'how.free_axis.dot(state.moment)', '0.0'),
+        ('motor of a free rotation of the wrong sign', 'free->moment', '-$'),
+    ]),
+    'prescribed-motion': (ROOT / 'core' / 'src' / 'motion', 'motion.cpp', [
+        ('spin of the wrong sign', 'own.prescribed->spin()', 'Vec3(-$)'),
+        ('the velocity is that at the start of a step', 'own.prescribed->velocity_at(xyz(position[i]))',
+         '(own.prescribed->spin().isZero(0.0) ? $ : Vec3(own.prescribed->spin().cross(xyz(position[i]))))'),
+    ]),
+    'groups': (ROOT / 'core' / 'src' / 'kernel', 'stepper.cpp', [
+        ('sinks take bodies of all groups', 'if (!one.groups.empty() && !one.groups[state_.group[i]]) continue;', ';'),
+        ('forces of engines act on all groups',
+         'if (one.groups[state_.group[i]]) force[i] += own_force[i], moment[i] += own_moment[i];',
+         'force[i] += own_force[i], moment[i] += own_moment[i];'),
     ]),
 }
+# Parts whose tests are not those of physics: program, tests.
+ELSEWHERE = {'prescribed-motion': ('run', 'Groups.*'), 'groups': ('run', 'Groups.*:Sink.*')}
 CHOICE = '''#include <cstdlib>
 namespace {
 const int planted_error = std::getenv("VARIABLE") != nullptr ? std::atoi(std::getenv("VARIABLE")) : 0;
@@ -105,8 +123,8 @@ Written by `scripts/planted.py`. Do not edit.
 **Summary.** Do the tests of physics detect errors in the code? Each error below was planted alone in a copy of a contact law or of the
 kernel, and at least one test failed each time.
 
-The last column has the tests of [tests/physics](../../tests/physics) that failed. Tests of whole specimens were not run,
-nor tests of curved surfaces for errors in a law.
+The last column has the tests of [tests/physics](../../tests/physics) that failed; for prescribed motions and groups those of
+[tests/run](../../tests/run). Tests of whole specimens were not run, nor tests of curved surfaces for errors outside the walls.
 
 | in | error | failing tests |
 | --- | --- | --- |
@@ -143,8 +161,18 @@ def command_of(build, words):
     sys.exit(f'planted.py: {build} has no command with {words}')
 
 
+def is_law(part):
+    return PARTS[part][0].parent == LAWS
+
+
 def library_of(build, part):
-    return build / 'lib' / 'grit' / ('libgrit.so' if part == 'walls' else f'contacts/{part}.so')
+    return build / 'lib' / 'grit' / (f'contacts/{part}.so' if is_law(part) else 'libgrit.so')
+
+
+def tests_of(build, part):
+    """The program with the tests of a part, and a filter of these; empty: all."""
+    program, wanted = ELSEWHERE.get(part, ('physics', ''))
+    return build / 'tests' / f'test_{program}', wanted
 
 
 def built(build, part, folder):
@@ -152,7 +180,7 @@ def built(build, part, folder):
     source_folder, source, _ = PARTS[part]
     changed = with_errors((source_folder / source).read_text(encoding='utf-8'), part)
     library = library_of(build, part)
-    unit = source_folder / (source if part == 'walls' else f'{part}.cpp')
+    unit = source_folder / (f'{part}.cpp' if is_law(part) else source)
     (folder / unit.name).write_bytes(unit.read_bytes())
     (folder / source).write_text(changed, encoding='utf-8')
     compile_one = command_of(build, [f' -c {unit}'])
@@ -165,12 +193,12 @@ def built(build, part, folder):
     return library, folder / 'planted.so'
 
 
-def failing(program, folder, excluded, errors):
+def failing(program, wanted, folder, excluded, errors):
     """Names of the tests that fail or do not end with an error planted; a parametrised test counts once."""
     tests = []
     patience = lambda: resource.setrlimit(resource.RLIMIT_CPU, (PATIENCE, PATIENCE))  # noqa: E731
     while True:
-        done = subprocess.run([program, '--gtest_filter=-' + ':'.join(excluded)], cwd=folder, stdout=subprocess.PIPE,
+        done = subprocess.run([program, f'--gtest_filter={wanted}-' + ':'.join(excluded)], cwd=folder, stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL, preexec_fn=patience, env={**os.environ, **errors})
         lines = done.stdout.decode(errors='replace').splitlines()
         tests += [match.group(1) for match in map(re.compile(r'\[  FAILED  \] ([^\s,]+).* ms\)$').match, lines) if match]
@@ -185,7 +213,7 @@ def failing(program, folder, excluded, errors):
 
 def tried(build, part):
     """Rows of the page: (part, error, tests)."""
-    program, excluded = build / 'tests' / 'test_physics', SLOW if part == 'walls' else SLOW + OF_WALLS
+    (program, wanted), excluded = tests_of(build, part), SLOW if part == 'walls' else SLOW + OF_WALLS
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         library, planted = built(build, part, folder)
@@ -193,11 +221,11 @@ def tried(build, part):
         os.replace(library, kept)
         try:
             shutil.copy(planted, library)
-            healthy = failing(program, folder, excluded, {})
+            healthy = failing(program, wanted, folder, excluded, {})
             if healthy:
                 sys.exit(f'planted.py: {part}: fail without an error: {", ".join(healthy)}')
             for number, (what, _, _) in enumerate(PARTS[part][2], 1):
-                tests = failing(program, folder, excluded, {variable(part): str(number)})
+                tests = failing(program, wanted, folder, excluded, {variable(part): str(number)})
                 print(f'{part}: {what}: {", ".join(tests) or "no test failed"}', flush=True)
                 yield part, what, tests
         finally:
@@ -214,9 +242,11 @@ def main():
             print(f'planted.py: --only takes one of {", ".join(PARTS)}', file=sys.stderr)
             return 2
     build = Path(words[0] if words else ROOT / 'build').resolve()
-    if not (build / 'tests' / 'test_physics').is_file():
-        print(f'{build}/tests/test_physics: no such program; build it (cmake --build --preset release)', file=sys.stderr)
-        return 2
+    for part in parts:
+        program, _ = tests_of(build, part)
+        if not program.is_file():
+            print(f'{program}: no such program; build it (cmake --build --preset release)', file=sys.stderr)
+            return 2
     for part in parts:
         library = library_of(build, part)
         if library.with_suffix('.unplanted').is_file():

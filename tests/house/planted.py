@@ -23,7 +23,8 @@ def tree():
     read = lambda path: path.read_text(encoding='utf-8')  # noqa: E731
     return {'sources': {part: read(room / source) for part, (room, source, _) in planted.PARTS.items()},
             'laws': sorted(folder.name for folder in planted.LAWS.iterdir() if folder.is_dir()),
-            'tests': '\n'.join(read(file) for file in sorted((ROOT / 'tests/physics').glob('*.cpp'))),
+            'tests': '\n'.join(read(file) for folder in ('physics', 'run')
+                               for file in sorted((ROOT / 'tests' / folder).glob('*.cpp'))),
             PAGE: read(ROOT / PAGE)}
 
 
@@ -51,7 +52,7 @@ def problems(found):
         wrong.append(f'{PAGE}: has a row twice')
     for row in rows:
         tests = row[2].split(', ') if len(row) == 3 else []
-        wrong += [f'{PAGE}: {" | ".join(row[:2])}: no test of physics: {test}' for test in tests or ['none']
+        wrong += [f'{PAGE}: {" | ".join(row[:2])}: no such test: {test}' for test in tests or ['none']
                   if test not in known]
     return wrong
 
@@ -76,13 +77,13 @@ def self_test():
         (broken('', text, 'another form', law), f'{what}: stands 0 times'),
         (broken('', text, f'{text} + {text}', law), f'{what}: stands 2 times'),
         ({**tree(), 'laws': [*tree()['laws'], 'bouncy']}, 'bouncy: no error is planted'),
-        (broken('tests', f'({suite}, {name})', f'({suite}, {name}Now)'), f'no test of physics: {test}'),
+        (broken('tests', f'({suite}, {name})', f'({suite}, {name}Now)'), f'no such test: {test}'),
         ({**tree(), 'tests': tree()['tests'].replace(f'TEST({slow},', f'TEST(Other{slow},')}, f'left out, but no test: {slow}.*'),
         (broken(PAGE, rows[0], ''), f'lacks "{law} | {what}"'),
         (broken(PAGE, rows[0], rows[0] + rows[0].replace(what, 'gravity × 2')), f'nothing plants "{law} | gravity × 2"'),
         (broken(PAGE, rows[0] + rows[1], rows[1] + rows[0]), 'is not in the order'),
         (broken(PAGE, rows[0], rows[0] * 2), 'has a row twice'),
-        (broken(PAGE, rows[0], f'| {law} | {what} | none |\n'), 'no test of physics: none'),
+        (broken(PAGE, rows[0], f'| {law} | {what} | none |\n'), 'no such test: none'),
         (broken(PAGE, 'Planted errors', 'Errors'), 'its head is not'),
     ]
     unseen = [words for found, words in cases if not any(words in line for line in problems(found))]
