@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "description/placed_error.hpp"
+#include "kernel/group_view.hpp"
 #include "kernel/stopwatch.hpp"
 #include "plugins/component_archive.hpp"
-#include "kernel/group_view.hpp"
 #include "run/recorder.hpp"
 #include "run/schedule.hpp"
 
