@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "grit/error.hpp"
 #include "run/conditions.hpp"
@@ -103,6 +104,65 @@ TEST(Departures, OfTheLastClumpRemoveAllOfIt) {
   EXPECT_NEAR(kinetic, 0.5 * trial.mass(3) * trial.velocity(3).squaredNorm(), 1e-9 * kinetic);
   trial.step(100);
   EXPECT_NEAR(trial.world().energies().gravitational, fallen, 1e-3 * std::abs(fallen));
+}
+
+/// Two grains in contact, one above the other, held at 1 m/s along x.
+Description pair_in_contact() {
+  Description d =
+      description("linear-rolling", stuff, {{{0, 0, 0.999e-3}, 1e-3, {1, 0, 0}}, {{0, 0, 2.998e-3}, 1e-3, {1, 0, 0}}});
+  d["engines"]["hold"] = {{"type", "hold"}, {"translation", "xyz"}};
+  return d;
+}
+void expect_none_left(const World& world) {
+  EXPECT_EQ(world.departures().size(), 2u);
+  EXPECT_TRUE(world.ids().empty());
+  EXPECT_TRUE(world.contacts().empty());
+}
+
+TEST(Departures, OfAllBodiesEndTheirContacts) {
+  Description d = pair_in_contact();
+  d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {2e-3, 0.01, 0.01}}, {"open_sides", {"+x"}}};
+  Trial trial(d);
+  ASSERT_EQ(trial.world().contacts().size(), 1u);
+  for (int k = 0; k < 20000 && trial.world().departures().empty(); ++k) trial.step();
+  expect_none_left(trial.world());
+  trial.step(3);
+  expect_none_left(trial.world());
+}
+
+TEST(Departures, OfAllBodiesIntoASinkEndContactsWithWalls) {
+  Description d = pair_in_contact();
+  d["walls"]["floor"] = plane({0, 0, 0}, {0, 0, 1});
+  const auto all_above = [](double z) {
+    return Description{{"type", "half-space"}, {"point", {0, 0, z}}, {"normal", {0, 0, -1}}};
+  };
+  d["engines"]["sink"] = {{"type", "sink"}, {"region", all_above(1)}};
+  d["bodies"]["late"] = description("", {}, {{{0, 0, 0.999e-3}, 1e-3}})["bodies"]["grains"];
+  d["bodies"]["late"]["stage"] = "late";
+  d["stages"][0]["name"] = "first";
+  for (const auto& [name, z] : {std::pair("remove", 0.0), std::pair("late", 1.0)})
+    d["stages"].push_back({{"name", name},
+                           {"until", {{"type", "steps"}, {"value", 1}}},
+                           {"limit", 1},
+                           {"change", {{"engines", {{"sink", {{"region", {{"point", {0, 0, z}}}}}}}}}}});
+  Trial trial(d);
+  trial.step(2);
+  ASSERT_EQ(trial.world().contacts().size(), 2u);
+  ASSERT_EQ(trial.world().walls()[0].contacts, 1u);
+  trial.begin_stage(1, "remove");
+  trial.step();
+  expect_none_left(trial.world());
+  EXPECT_EQ(trial.world().walls()[0].contacts, 0u);
+  EXPECT_EQ(trial.world().walls()[0].force, Vec3::Zero());
+  trial.step(3);
+  expect_none_left(trial.world());
+
+  // A body that appears where one was has a contact of its own.
+  trial.begin_stage(2, "late");
+  trial.kernel().find_forces();
+  EXPECT_EQ(trial.world().ids().size(), 1u);
+  EXPECT_EQ(trial.world().walls()[0].contacts, 1u);
+  EXPECT_LT(trial.world().walls()[0].force.z(), 0);
 }
 
 TEST(Departures, AreTheSameBitsForAnyNumberOfThreads) {

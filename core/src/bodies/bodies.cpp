@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "bodies/reordering.hpp"
 #include "grit/error.hpp"
 
 namespace grit {
@@ -123,16 +124,14 @@ void Bodies::reorder(std::span<const std::uint32_t> order) {
   permute(rotation, order, before), permute(origin, order, before);
   if (clumps.none()) return;
   permute(clumps.of_body, order, before), permute(clumps.volume_fraction, order, before);
-  constexpr std::uint32_t gone = ~0u;
-  std::vector<std::uint32_t> now(before, gone);
-  for (std::size_t i = 0; i < order.size(); ++i) now[order[i]] = static_cast<std::uint32_t>(i);
+  const std::vector<std::uint32_t> now = present_indices(order, before);
   std::vector<Clump> kept;
   std::vector<std::uint32_t> spheres;
   // Clumps have the order of their first spheres, so that those of neighbouring bodies are close in memory.
   const auto place = [&](const Clump& clump) { return now[clumps.spheres[clump.first]]; };
   std::ranges::sort(clumps.clump, {}, place);
   for (Clump clump : clumps.clump) {
-    if (place(clump) == gone) break;
+    if (place(clump) == body_gone) break;
     const auto first = static_cast<std::uint32_t>(spheres.size());
     for (std::uint32_t k = clump.first; k < clump.last; ++k) {
       spheres.push_back(now[clumps.spheres[k]]);

@@ -5,11 +5,13 @@
 #include <numeric>
 #include <utility>
 
+#include "bodies/reordering.hpp"
 #include "grit/contact/fields.hpp"
 
 namespace grit {
 namespace {
 
+/// Slot of a pair that is no candidate any more.
 constexpr std::uint32_t nowhere = ~0u;
 
 /// A pair that was in contact before the rebuild, sorted by its present lower body index.
@@ -40,17 +42,19 @@ void give_back(Array& array) {
 }  // namespace
 
 void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic,
-                           std::span<const StateField> fields, std::span<const std::uint32_t> order, Team& team) {
+                           std::span<const StateField> fields, std::optional<std::span<const std::uint32_t>> order,
+                           Team& team) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
   // Free arrays that are rebuilt last, to reduce peak memory.
   give_back(row_), give_back(inbox_);
-  // Bodies may have been appended and others removed since the last time.
-  const std::size_t before = order.empty() ? bodies_ : std::max<std::size_t>(bodies_, std::ranges::max(order) + 1);
-  std::vector<std::uint32_t> now(std::max(before, count), order.empty() ? 0 : nowhere);
-  if (order.empty()) std::iota(now.begin(), now.end(), 0u);
-  else
-    for (std::size_t i = 0; i < count; ++i) now[order[i]] = static_cast<std::uint32_t>(i);
+  std::vector<std::uint32_t> now;
+  if (order) {
+    now = present_indices(*order, bodies_);
+  } else {
+    now.resize(bodies_);
+    std::iota(now.begin(), now.end(), 0u);
+  }
   bodies_ = count;
 
   std::vector<std::uint32_t> former_start(count + 1, 0);  // by lower body
@@ -59,7 +63,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
       for (std::uint32_t mask = touching_[block]; mask != 0; mask &= mask - 1) {
         const auto slot = static_cast<std::uint32_t>(block * block_size + std::countr_zero(mask));
         const std::uint32_t p = now[a_[slot]], q = now[b_[slot]];
-        if (p != nowhere && q != nowhere) use(std::min(p, q), Former{std::max(p, q), slot, p > q, nowhere});
+        if (p != body_gone && q != body_gone) use(std::min(p, q), Former{std::max(p, q), slot, p > q, nowhere});
       }
   };
   each_former([&](std::uint32_t lower, const Former&) { ++former_start[lower + 1]; });

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,10 +30,10 @@ inline constexpr bool plain_numbers<StateLine> = true;
 /// pairs across chunks write a row for b. Contact histories are kept when the table is rebuilt.
 class ContactTable {
  public:
-  /// `order[i]` is the old index of the body that now has index i; empty if indices have not changed. Bodies that are
-  /// not in it have left.
+  /// `order[i]` is the old index of the body that now has index i; none if indices have not changed. Bodies that are
+  /// not in it have left: all of them, if it is empty.
   void rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic, std::span<const StateField> fields,
-               std::span<const std::uint32_t> order, Team& team);
+               std::optional<std::span<const std::uint32_t>> order, Team& team);
   /// Changes the fields of the contact history; those in both sets are kept.
   void set_fields(std::span<const StateField> fields);
 

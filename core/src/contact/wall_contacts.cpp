@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "bodies/reordering.hpp"
 #include "grit/contact/fields.hpp"
 
 namespace grit {
@@ -62,16 +63,12 @@ void straighten(WallContact& contact, std::span<const WallSurface> walls) {
 
 void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> group,
                            std::span<const WallSurface> walls, const Skins& skins, std::span<const StateField> fields,
-                           std::span<const std::uint32_t> order) {
+                           std::optional<std::span<const std::uint32_t>> order) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
   // Contact histories follow their bodies into other chunks.
-  if (!order.empty()) {
-    constexpr std::uint32_t gone = ~0u;
-    // Bodies may have been appended and others removed since the last time.
-    std::vector<std::uint32_t> now(std::max<std::size_t>(std::ranges::max(order) + 1, chunks_.size() * chunk_bodies),
-                                   gone);
-    for (std::size_t i = 0; i < count; ++i) now[order[i]] = static_cast<std::uint32_t>(i);
+  if (order) {
+    const std::vector<std::uint32_t> now = present_indices(*order, chunks_.size() * chunk_bodies);
     std::vector<WallContact> contact;
     std::vector<double> state;
     for (Chunk& chunk : chunks_) {
@@ -83,7 +80,7 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> 
     chunks_.resize(chunks_of(count));
     std::vector<std::size_t> place(contact.size());
     std::iota(place.begin(), place.end(), std::size_t{0});
-    std::erase_if(place, [&](std::size_t p) { return contact[p].body == gone; });
+    std::erase_if(place, [&](std::size_t p) { return contact[p].body == body_gone; });
     std::sort(place.begin(), place.end(),
               [&](std::size_t p, std::size_t q) { return key(contact[p]) < key(contact[q]); });
     for (const std::size_t p : place) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -72,9 +73,10 @@ struct WallLoad {
 class WallContacts {
  public:
   /// Finds which bodies may come into contact with which walls while no displacement exceeds its skin. `group`: of each
-  /// body; may be empty if walls act on all groups.
+  /// body; may be empty if walls act on all groups. `order`: as in ContactTable::rebuild().
   void rebuild(const Bodies& bodies, std::span<const std::uint16_t> group, std::span<const WallSurface> walls,
-               const Skins& skins, std::span<const StateField> fields, std::span<const std::uint32_t> order);
+               const Skins& skins, std::span<const StateField> fields,
+               std::optional<std::span<const std::uint32_t>> order);
   void set_fields(std::span<const StateField> fields);
   static constexpr std::uint32_t no_wall = ~0u;
   /// Walls get new indices, before the next rebuild(). Contacts of walls that become no_wall are removed.

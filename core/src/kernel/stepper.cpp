@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "domain/boundaries.hpp"
 #include "kernel/arrivals.hpp"
@@ -68,7 +70,7 @@ void Stepper::rebuild() {
   mark_removed(wrapped.leaves);
   if (!arrivals_.empty()) check_arrivals(state_, view_, arrivals_);
   const bool some_leave = std::ranges::find(wrapped.leaves, true) != wrapped.leaves.end();
-  std::vector<std::uint32_t> order;
+  std::optional<std::vector<std::uint32_t>> order;
   if (state_.lists.sorts() || some_leave || !arrivals_.empty()) {
     order = spatial_order(bodies, cell.cell());
     if (some_leave) {
@@ -79,9 +81,9 @@ void Stepper::rebuild() {
         balance_.add_settings(-one.kinetic);
         guard_.discharged(one.kinetic + one.potential);
       }
-      std::erase_if(order, [&](std::uint32_t i) { return wrapped.leaves[i]; });
+      std::erase_if(*order, [&](std::uint32_t i) { return wrapped.leaves[i]; });
     }
-    bodies.reorder(order);
+    bodies.reorder(*order);
     find_groups(state_);
     state_.sum.resize(bodies.count() + 1), passes_.resize(bodies.count());
   }
