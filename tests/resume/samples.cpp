@@ -1,7 +1,9 @@
 // Runs that begin from a prepared sample: the state of another run.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "output/read_frames.hpp"
 #include "output/read_results.hpp"
@@ -317,6 +319,72 @@ TEST_F(Samples, FramesHoldTheTiltOfACellThatShears) {
                length_before = before.cell_high.x() - before.cell_low.x();
   EXPECT_NEAR(end.tilt.x() / length - before.tilt.x() / length_before, 20 * time, 1e-4);
   EXPECT_NEAR(end.tilt.z() / length - before.tilt.z() / length_before, -10 * time, 1e-4);
+}
+
+TEST_F(Samples, HaveTheMassesOfTheScene) {
+  const std::string
+      mass =
+          R"(/probes/sum={"type": "formula", "every_time": "1 ms", "curves": {"m": {"formula": "mass", "unit": "kg", "doc": "mass of all"}}})",
+      brief = R"(/stages/0/until={"type": "time", "value": "2 ms"})", no_weight = "/engines/gravity=null",
+      frames = R"(/output={"frames": {"every_time": "1 ms"}})",
+      scaled = R"(/bodies/grains/density_scaling={"below": 3e-3})";
+  const auto mass_of = [&](const std::string& file, const std::string& out, std::vector<std::string> sets) {
+    sets.insert(sets.end(), {mass, brief});
+    const auto one = run(file, out, sets);
+    EXPECT_EQ(one.status, 0) << one.err;
+    return one.status == 0 ? series(out, "sum/m").front() : 0;
+  };
+  const double plain = mass_of("prepare.json", "sample", {frames}),
+               heavy = mass_of("prepare.json", "scaled", {frames, scaled, no_weight});
+  EXPECT_NEAR(heavy, 80 * 2600 * std::numbers::pi / 6 * std::pow(3e-3, 3), 1e-12 * heavy);
+  ASSERT_GT(heavy, 1.7 * plain);
+  for (const char* at : {"end", "frame"}) {
+    SCOPED_TRACE(at);
+    const std::string begin = std::string("/begin/at=") + at;
+    const auto expect_begun = [&](double expected, std::vector<std::string> sets) {
+      sets.push_back(begin);
+      EXPECT_NEAR(mass_of("test.json", "test", std::move(sets)), expected, 1e-12 * expected);
+    };
+    expect_begun(plain, {});
+    expect_begun(2 * plain, {"/materials/sand/density=5200"});
+    expect_begun(heavy, {scaled, no_weight});
+    expect_begun(heavy, {"/begin/from=scaled", scaled, no_weight});
+    expect_begun(plain, {"/begin/from=scaled"});  // under gravity
+  }
+}
+
+TEST_F(Samples, HaveTheShapesOfTheScene) {
+  folder.write("stir.json", stir), folder.write("on.json", stir_on);
+  const std::string brief = "/stages/0/until/value=10 ms", last = "/begin/frame=-1";
+  const auto refuses_at_any = [&](const std::string& change, const std::string& message) {
+    for (const char* at : {"end", "frame"}) {
+      SCOPED_TRACE(at);
+      refuses({last, std::string("/begin/at=") + at, change}, AllOf(HasSubstr("/bodies/rods"), HasSubstr(message)),
+              "on.json");
+    }
+  };
+  ASSERT_EQ(run("stir.json", "stirred", {brief}).status, 0);
+  refuses_at_any("/bodies/rods/shape/count=3", "has clumps of 2 spheres, here it has clumps of 3 spheres");
+  refuses_at_any("/bodies/rods/shape/spacing=0.9", "has clumps of 2 spheres, here it has others");
+
+  // Spheres of the same sizes at other places.
+  const auto bent = [](const std::string& y) {
+    return R"(/bodies/rods/shape={"type": "list", "spheres": [{"position": [0, 0, 0], "radius": 1},
+              {"position": [1, )" +
+           y + R"(, 0], "radius": 1}, {"position": [2, 0, 0], "radius": 1}]})";
+  };
+  ASSERT_EQ(run("stir.json", "stirred", {brief, bent("0.1")}).status, 0);
+  refuses_at_any(bent("-0.4"), "has clumps of 3 spheres, here it has others");
+  for (const char* at : {"end", "frame"}) {
+    const auto on = run("on.json", "on", {last, std::string("/begin/at=") + at, bent("0.1")});
+    EXPECT_EQ(on.status, 0) << on.err;
+  }
+
+  prepare_sample();
+  refuses(
+      {"/bodies/grains/type=clump", R"(/bodies/grains/shape={"type": "rod"})"},
+      AllOf(HasSubstr("/bodies/grains"),
+            HasSubstr("has single spheres, here it has clumps of 2 spheres; use the type and shape of the sample")));
 }
 
 TEST_F(Samples, SayWhichFramesThereAre) {

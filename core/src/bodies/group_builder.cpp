@@ -18,6 +18,11 @@ GroupBuilder::GroupBuilder(const SceneDescription& scene, const BodiesDescriptio
 
 double GroupBuilder::inert(double radius) const { return std::max(radius, 0.5 * scaled_below_); }
 
+Vec3 GroupBuilder::clump_inertia(double radius) const {
+  const double size = inert(radius);
+  return mass(radius) * size * size * kind_->clump()->inertia;
+}
+
 std::optional<double> GroupBuilder::shape_diameter() const {
   if (clump() == nullptr || !(clump()->given_radius > 0)) return std::nullopt;
   return 2 * clump()->given_radius;
@@ -27,8 +32,7 @@ void GroupBuilder::add(Bodies& bodies, const Vec3& centre, double radius, const 
                        const Vec3& velocity, const Vec3& spin) const {
   const ClumpShape* const shape = kind_->clump();
   if (shape == nullptr) {
-    const double own = mass(radius);
-    bodies.add(centre, radius, own, kind_->inertia(inert(radius), own), material_, velocity, spin);
+    bodies.add(centre, radius, mass(radius), inertia(radius), material_, velocity, spin);
     return;
   }
   const Eigen::Quaterniond orientation = turn * Eigen::Quaterniond(shape->axes);
@@ -38,10 +42,27 @@ void GroupBuilder::add(Bodies& bodies, const Vec3& centre, double radius, const 
 
 void GroupBuilder::add_clump(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& orientation,
                              const Vec3& velocity, const Vec3& spin) const {
-  const double own = mass(radius), size = inert(radius);
-  const ClumpShape& shape = *kind_->clump();
-  bodies.add_clump(shape, centre, radius, own, own * size * size * shape.inertia, orientation, material_, velocity,
-                   spin);
+  bodies.add_clump(*kind_->clump(), centre, radius, mass(radius), clump_inertia(radius), orientation, material_,
+                   velocity, spin);
+}
+
+void GroupBuilder::take_over(Bodies& bodies, std::size_t body) const {
+  const auto weigh = [&](std::size_t i, double mass_of, double inertia_of) {
+    bodies.material[i] = material_;
+    bodies.velocity[i].w = 1 / mass_of, bodies.spin[i].w = 1 / inertia_of;
+  };
+  const std::uint32_t c = bodies.clumps.clump_of(body);
+  if (c == no_clump) {
+    const double radius = bodies.position[body].w;
+    return weigh(body, mass(radius), inertia(radius));
+  }
+  Clump& clump = bodies.clumps.clump[c];
+  if (bodies.clumps.spheres[clump.first] != body) return;
+  const Vec3 inertia = clump_inertia(clump.radius);
+  clump.momentum *= inertia[0] / clump.inertia[0];  // all moments change alike
+  clump.inertia = inertia, clump.inverse_mass = 1 / mass(clump.radius);
+  for (std::uint32_t k = clump.first; k < clump.last; ++k)
+    weigh(bodies.clumps.spheres[k], mass(clump.radius), inertia.minCoeff());
 }
 
 }  // namespace grit

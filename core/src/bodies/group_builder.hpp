@@ -22,6 +22,9 @@ class GroupBuilder {
   /// Adds a clump by its centre of mass and the orientation of its principal axes.
   void add_clump(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& orientation,
                  const Vec3& velocity, const Vec3& spin) const;
+  /// Gives a body that another description made the material, mass and inertia of this group; velocity and spin are
+  /// kept. A clump gets them with its first sphere. Its kind and shape must be those of the group.
+  void take_over(Bodies& bodies, std::size_t body) const;
   const ClumpShape* clump() const { return kind_->clump(); }
   /// Diameter of the enclosing sphere of the shape as it was given [m].
   std::optional<double> shape_diameter() const;
@@ -29,6 +32,10 @@ class GroupBuilder {
  private:
   /// The radius that determines mass and inertia: larger for small bodies with density scaling.
   double inert(double radius) const;
+  /// Of a single sphere [kg m²].
+  double inertia(double radius) const { return kind_->inertia(inert(radius), mass(radius)); }
+  /// Principal moments of a clump [kg m²].
+  Vec3 clump_inertia(double radius) const;
 
   std::shared_ptr<const BodyKind> kind_;
   double density_, scaled_below_;  // kg/m³, m

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <set>
 
 #include "bodies/make_bodies.hpp"
@@ -10,6 +9,7 @@
 #include "grit/error.hpp"
 #include "simulation/no_recorder.hpp"
 #include "simulation/sample_checks.hpp"
+#include "simulation/sample_groups.hpp"
 #include "simulation/sample_of_frame.hpp"
 #include "simulation/stage_runner.hpp"
 #include "storage/state_file.hpp"
@@ -47,29 +47,19 @@ void check_springs(const ContactLaw& law, const std::vector<StateField>& fields,
                             "of the sample, or start without springs: \"begin\": {\"springs\": \"drop\"}"});
 }
 
-/// Gives bodies the materials and densities of the scene.
-void set_materials(const SceneDescription& scene, const SceneDescription& before, Bodies& bodies) {
-  const std::vector<std::string> names = material_names(scene);
-  struct Change {
-    std::uint8_t material;
-    double lighter;  // former over present density
-  };
-  std::map<std::string, Change> changes;
-  for (const auto& [name, group] : scene.bodies)
-    if (group.is_from_sample()) {
-      const double now = scene.materials.at(group.material).density,
-                   then = before.materials.at(before.bodies.at(name).material).density;
-      changes[name] = {static_cast<std::uint8_t>(std::ranges::find(names, group.material) - names.begin()), then / now};
-    }
-  std::set<std::uint32_t> done;
+void check_shapes(const Bodies& bodies, SampleGroups& groups) {
   for (std::size_t i = 0; i < bodies.count(); ++i) {
-    const Change& change = changes.at(bodies.group_of(bodies.id[i]));
-    bodies.material[i] = change.material;
-    bodies.velocity[i].w *= change.lighter, bodies.spin[i].w *= change.lighter;
     const std::uint32_t c = bodies.clumps.clump_of(i);
-    if (c == no_clump || !done.insert(c).second) continue;
-    Clump& clump = bodies.clumps.clump[c];
-    clump.inverse_mass *= change.lighter, clump.inertia /= change.lighter, clump.momentum /= change.lighter;
+    if (c == no_clump) groups.takes_sphere(bodies.group_of(bodies.id[i]));
+  }
+  std::vector<SampleSphere> spheres;
+  for (const Clump& clump : bodies.clumps.clump) {
+    spheres.clear();
+    const auto first = bodies.clumps.spheres.begin() + clump.first, last = bodies.clumps.spheres.begin() + clump.last;
+    std::for_each(first, last, [&](std::uint32_t i) {
+      spheres.push_back({bodies.clumps.of_body[i].place.norm(), bodies.position[i].w});
+    });
+    groups.takes_clump(bodies.group_of(bodies.id[*first]), clump.radius, spheres);
   }
 }
 
@@ -97,6 +87,11 @@ Prepared prepared_sample(const LiveScene& live, const Registry& registry, StateR
   for (const BodyGroup& group : prepared.bodies.groups) groups.insert(group.name);
   check_groups(scene, groups, sample, faults);
   check_domain(scene.domain, live_before.now().domain, sample, faults);
+  SampleGroups builders(live, sample);
+  if (faults.empty()) {
+    check_shapes(prepared.bodies, builders);
+    faults = builders.faults();
+  }
   if (begin.springs == "keep") {
     ContactLaw& law = *live.components().law;
     law.mix(materials_in_use(scene, material_names(scene)), materials_of_bodies(scene));
@@ -105,7 +100,9 @@ Prepared prepared_sample(const LiveScene& live, const Registry& registry, StateR
     prepared.sample->pairs = {}, prepared.sample->wall_contacts = {};
   }
   if (!faults.empty()) throw PlacedError(std::move(faults));
-  set_materials(scene, live_before.now(), prepared.bodies);
+  Bodies& bodies = prepared.bodies;
+  for (std::size_t i = 0; i < bodies.count(); ++i)
+    builders.builder_of(bodies.group_of(bodies.id[i])).take_over(bodies, i);
   prepared.sample->walls.drop(walls_with_other_geometry(scene, live_before.now()));
   prepared.bodies.request(state);
   return prepared;

@@ -5,15 +5,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "bodies/group_builder.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
 #include "simulation/sample_checks.hpp"
+#include "simulation/sample_groups.hpp"
 #include "storage/frame_state.hpp"
 
 namespace grit {
@@ -87,15 +87,20 @@ std::size_t stage_of(const FrameState& frame, const Scene& before) {
   return at == stages.end() ? 0 : static_cast<std::size_t>(at - stages.begin());
 }
 
-std::string spheres(std::size_t count) {
-  return count == 1 ? "single spheres" : "clumps of " + std::to_string(count) + " spheres";
+/// Distance of a sphere from its clump; one of the two may have been moved by periods.
+double distance(const Vec3& sphere, const Vec3& centre, const Cell& cell) {
+  Vec3 branch = sphere - centre;
+  for (int axis = 2; axis >= 0; --axis)
+    if (const Vec3 period = cell.period(axis); period[axis] > 0)
+      branch -= std::round(branch[axis] / period[axis]) * period;
+  return branch.norm();
 }
 
 /// Makes the bodies of a frame by the groups of the scene.
 class FrameBodies {
  public:
-  FrameBodies(const LiveScene& live, const FrameState& frame, std::string sample)
-      : live_(live), frame_(frame), sample_(std::move(sample)) {
+  FrameBodies(const LiveScene& live, const FrameState& frame, const Cell& cell, const std::string& sample)
+      : frame_(frame), cell_(cell), groups_(live, sample) {
     for (const FrameClump& clump : frame_.clumps) clumps_[clump.id] = &clump;
   }
 
@@ -106,7 +111,7 @@ class FrameBodies {
     for (const std::string& name : frame_.groups)
       if (std::ranges::find(bodies_.groups, name, &BodyGroup::name) == bodies_.groups.end())
         bodies_.groups.push_back({name, bodies_.ids_given});
-    if (!faults_.empty()) throw PlacedError(std::move(faults_));
+    if (!groups_.faults().empty()) throw PlacedError(groups_.faults());
     bodies_.finish(state);
     return std::move(bodies_);
   }
@@ -118,54 +123,28 @@ class FrameBodies {
     const std::string& name = frame_.groups.at(body.group);
     if (bodies_.groups.empty() || bodies_.groups.back().name != name) bodies_.groups.push_back({name, body.id});
     bodies_.ids_given = body.id;
-    const GroupBuilder& builder = builder_of(name);
     if (body.clump < 0) {
-      if (builder.clump() != nullptr) refuse(name, 1, builder);
-      else builder.add(bodies_, body.position, body.radius, Eigen::Quaterniond::Identity(), body.velocity, body.spin);
+      if (groups_.takes_sphere(name))
+        groups_.builder_of(name).add(bodies_, body.position, body.radius, Eigen::Quaterniond::Identity(), body.velocity,
+                                     body.spin);
       return 1;
     }
-    std::size_t last = first;
-    while (last < frame_.bodies.size() && frame_.bodies[last].clump == body.clump) ++last;
     const FrameClump& clump = *clumps_.at(body.clump);
-    if (!has_shape(builder.clump(), clump, first, last)) return refuse(name, last - first, builder), last - first;
-    bodies_.clump_ids_given = static_cast<std::uint32_t>(clump.id);
-    builder.add_clump(bodies_, clump.centre, clump.radius, clump.orientation, clump.velocity, clump.spin);
-    return last - first;
-  }
-
-  bool has_shape(const ClumpShape* shape, const FrameClump& clump, std::size_t first, std::size_t last) const {
-    constexpr double rounding = 1e-9;  // of radii, relative
-    if (shape == nullptr || shape->spheres.size() != last - first) return false;
-    for (std::size_t k = first; k < last; ++k) {
-      const double radius = frame_.bodies[k].radius;
-      if (std::abs(clump.radius * shape->spheres[k - first].w - radius) > rounding * radius) return false;
+    std::vector<SampleSphere> spheres;
+    for (std::size_t k = first; k < frame_.bodies.size() && frame_.bodies[k].clump == body.clump; ++k)
+      spheres.push_back({distance(frame_.bodies[k].position, clump.centre, cell_), frame_.bodies[k].radius});
+    if (groups_.takes_clump(name, clump.radius, spheres)) {
+      bodies_.clump_ids_given = static_cast<std::uint32_t>(clump.id);
+      groups_.builder_of(name).add_clump(bodies_, clump.centre, clump.radius, clump.orientation, clump.velocity,
+                                         clump.spin);
     }
-    return true;
+    return spheres.size();
   }
 
-  /// One fault for each group.
-  void refuse(const std::string& name, std::size_t count, const GroupBuilder& builder) {
-    if (!refused_.insert(name).second) return;
-    const std::size_t wanted = builder.clump() == nullptr ? 1 : builder.clump()->spheres.size();
-    faults_.push_back({{"bodies", name},
-                       "this group of " + sample_ + " has " + spheres(count) + ", here it has " +
-                           (wanted == count ? "others" : spheres(wanted)) + "; use the type and shape of the sample"});
-  }
-
-  const GroupBuilder& builder_of(const std::string& name) {
-    if (const auto known = builders_.find(name); known != builders_.end()) return known->second;
-    const SceneDescription& scene = live_.now();
-    return builders_.emplace(name, GroupBuilder(scene, scene.bodies.at(name), live_.components().body_kinds.at(name)))
-        .first->second;
-  }
-
-  const LiveScene& live_;
   const FrameState& frame_;
-  std::string sample_;
+  const Cell& cell_;
+  SampleGroups groups_;
   std::map<std::int64_t, const FrameClump*> clumps_;
-  std::map<std::string, GroupBuilder> builders_;
-  std::set<std::string> refused_;
-  SampleFaults faults_;
   Bodies bodies_;
 };
 
@@ -199,7 +178,7 @@ Prepared sample_of_frame(const LiveScene& live, const Registry& registry, StateR
 
   Cell cell{frame.cell_low, frame.cell_high, live_before.now().domain.periodic, frame.strain_rate};
   cell.shear_rate = frame.shear_rate, cell.tilt = frame.tilt;
-  Prepared prepared(FrameBodies(live, frame, sample).make(state),
+  Prepared prepared(FrameBodies(live, frame, cell, sample).make(state),
                     {DeformingCell(cell), walls_of(frame, live_before), {}, {}});
   prepared.sample->walls.drop(walls_with_other_geometry(scene, live_before.now()));
   prepared.note = "begins from frame " + std::to_string(chosen.number) + " of " + begin.from + ", at " +

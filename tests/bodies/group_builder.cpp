@@ -1,0 +1,83 @@
+// Bodies of one description that get the masses of another.
+#include <gtest/gtest.h>
+
+#include "bodies/group_builder.hpp"
+#include "support/clump.hpp"
+
+namespace grit::test::group_builder_tests {
+namespace {
+
+struct Weights {
+  double density, scaled_below;  // kg/m³, m
+};
+
+/// Two spinning grains of different sizes.
+Description two_grains(const Weights& weights, bool clumps) {
+  Description d = description("linear-rolling", {{"contact_modulus", 1e7}, {"density", weights.density}},
+                              {{{0, 0, 0}, 1e-3, {0, 1, 0}, {3, -5, 7}}, {{9e-3, 0, 0}, 2e-3, {0, 0, 2}, {-1, 4, 2}}});
+  if (weights.scaled_below > 0) d["bodies"]["grains"]["density_scaling"]["below"] = weights.scaled_below;
+  if (clumps) make_clumps(d, boomerang());
+  return d;
+}
+
+struct Made {
+  explicit Made(const Description& plain) : scene(scene_of(plain)), live(scene) {}
+  Bodies bodies() const { return make_bodies(live.now(), live.components(), {}); }
+  GroupBuilder builder() const {
+    return {live.now(), live.now().bodies.at("grains"), live.components().body_kinds.at("grains")};
+  }
+  Scene scene;
+  LiveScene live;
+};
+
+void expect_masses_of(const Weights& now, const Weights& before, bool clumps) {
+  const Made made(two_grains(now, clumps));
+  const Bodies expected = made.bodies();
+  Bodies bodies = Made(two_grains(before, clumps)).bodies();
+  for (std::uint8_t& material : bodies.material) material = 17;
+  for (std::size_t i = 0; i < bodies.count(); ++i) made.builder().take_over(bodies, i);
+  ASSERT_EQ(bodies.count(), expected.count());
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    EXPECT_EQ(bodies.velocity[i].w, expected.velocity[i].w);
+    EXPECT_EQ(bodies.spin[i].w, expected.spin[i].w);
+    EXPECT_EQ(bodies.material[i], expected.material[i]);
+    EXPECT_EQ(xyz(bodies.velocity[i]), xyz(expected.velocity[i]));
+    EXPECT_EQ(xyz(bodies.spin[i]), xyz(expected.spin[i]));
+  }
+  ASSERT_EQ(bodies.clumps.clump.size(), expected.clumps.clump.size());
+  ASSERT_EQ(bodies.clumps.clump.size(), clumps ? 2u : 0u);
+  for (std::size_t c = 0; c < bodies.clumps.clump.size(); ++c) {
+    const Clump &clump = bodies.clumps.clump[c], &wanted = expected.clumps.clump[c];
+    EXPECT_EQ(clump.inverse_mass, wanted.inverse_mass);
+    EXPECT_EQ(clump.inertia, wanted.inertia);
+    EXPECT_LT((clump.momentum - wanted.momentum).norm(), 1e-13 * wanted.momentum.norm());
+    EXPECT_EQ(clump.spin, wanted.spin);
+  }
+}
+
+TEST(GroupBuilder, TakesOverBodiesOfAnotherDensityOrScaling) {
+  constexpr double below = 3e-3;  // the smaller one only
+  for (const bool clumps : {false, true}) {
+    SCOPED_TRACE(clumps ? "clumps" : "spheres");
+    expect_masses_of({5200, 0}, {2600, 0}, clumps);
+    expect_masses_of({2600, below}, {2600, 0}, clumps);
+    expect_masses_of({2600, 0}, {2600, below}, clumps);
+    expect_masses_of({2600, 2 * below}, {1000, below}, clumps);
+  }
+}
+
+/// A sample that continues unchanged keeps its last bits.
+TEST(GroupBuilder, KeepsTheBitsOfBodiesOfTheSameGroup) {
+  for (const bool clumps : {false, true}) {
+    const Made made(two_grains({2600, 3e-3}, clumps));
+    const Bodies before = made.bodies();
+    Bodies bodies = made.bodies();
+    for (std::size_t i = 0; i < bodies.count(); ++i) made.builder().take_over(bodies, i);
+    for (std::size_t i = 0; i < bodies.count(); ++i) EXPECT_EQ(bodies.spin[i].w, before.spin[i].w);
+    for (std::size_t c = 0; c < bodies.clumps.clump.size(); ++c)
+      EXPECT_EQ(bodies.clumps.clump[c].momentum, before.clumps.clump[c].momentum);
+  }
+}
+
+}  // namespace
+}  // namespace grit::test::group_builder_tests
