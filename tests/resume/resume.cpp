@@ -4,7 +4,6 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "output/read_frames.hpp"
 #include "output/read_results.hpp"
@@ -52,24 +51,11 @@ class Resume : public testing::Test {
   Outcome grit(std::vector<std::string> words) const { return grit_in(folder.path(), std::move(words)); }
   json run_json(const std::string& results) const { return json::parse(text_of(folder / (results + "/run.json"))); }
 
-  /// Waits until the run of the test meets a condition. Fails if the run ends first.
-  template <class Condition>
-  static void wait_until(Condition holds, const std::string& what) {
-    siginfo_t ended{};
-    while (!holds() && ended.si_pid == 0) {
-      ASSERT_EQ(::waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT), 0);
-      std::this_thread::yield();
-    }
-    ASSERT_TRUE(holds()) << "the run has ended without " << what << "; does it still take long enough?";
-  }
   /// Stops a run in its first stage.
   void interrupt(const std::string& out, std::vector<std::string> more = {}) const {
     Program program(grit_with(run(out, std::move(more))), folder.path());
-    const auto second = folder / (out + "/frames/000001.h5");
-    ASSERT_NO_FATAL_FAILURE(wait_until([&] { return std::filesystem::exists(second); }, "a second frame"));
-    program.interrupt();
-    const auto outcome = program.finish();
-    ASSERT_EQ(outcome.status, 130) << outcome.err;
+    Outcome outcome;
+    ASSERT_NO_FATAL_FAILURE(interrupt_after(program, folder / (out + "/frames/000001.h5"), outcome));
     EXPECT_THAT(outcome.err, HasSubstr("'grit run --resume " + out + "'"));
   }
   /// Kills a run after it has written a new checkpoint.
@@ -150,6 +136,18 @@ TEST_F(Resume, GivesTheSameAsARunThatWasNeverStopped) {
   const auto again = grit(run("part", {"--resume"}));
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(again.out, "part: already complete\n");
+}
+
+/// The plane is drawn in the box of the first bodies, which a resumed run does not make again.
+TEST_F(Resume, DrawsAnUnboundedPlaneAsBefore) {
+  const std::vector<std::string> on_a_plane{"--set", "/walls/box=null", "--set",
+                                            R"(/walls/floor={"type": "plane", "material": "sand"})"};
+  ASSERT_EQ(grit(run("whole", on_a_plane)).status, 0);
+  interrupt("part", on_a_plane);
+  ASSERT_EQ(grit({"run", "part", "--resume", "--no-report"}).status, 0);
+  const auto walls = text_of(folder / "whole/frames/000005_walls.vtp");
+  EXPECT_THAT(walls, HasSubstr("NumberOfPolys=\"2\""));
+  expect_same_results("whole", "part");
 }
 
 TEST_F(Resume, ContinuesAKilledRun) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -156,6 +157,42 @@ TEST_F(Samples, DroppedSpringsMoveGrains) {
   ASSERT_EQ(run("test.json", "test", {"/begin/springs=drop"}).status, 0);
   EXPECT_EQ(series("test", "energy/elastic_shear").front(), 0);
   EXPECT_GT(series("test", "energy/elastic_normal").front(), 0);
+}
+
+/// A checkpoint suffices to resume: the sample may have been removed.
+TEST_F(Samples, AreNotNeededToResume) {
+  prepare_sample();
+  const std::vector<std::string> words{"run",
+                                       "test.json",
+                                       "--no-report",
+                                       "--set",
+                                       R"(/stages/0/until={"type": "steps", "value": 60000})",
+                                       "--set",
+                                       "/stages/0/limit=1 h",
+                                       "--set",
+                                       R"(/output={"frames": {"every_steps": 2000}})",
+                                       "--out"};
+  const auto to = [&](const std::string& out) {
+    auto all = words;
+    all.push_back(out);
+    return all;
+  };
+  ASSERT_EQ(grit(to("whole")).status, 0);
+  {
+    Program program(grit_with(to("part")), folder.path());
+    Outcome outcome;
+    ASSERT_NO_FATAL_FAILURE(interrupt_after(program, folder / "part/frames/000001.h5", outcome));
+  }
+  std::filesystem::remove_all(folder / "sample");
+  const auto rest = grit({"run", "part", "--resume", "--no-report"});
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_THAT(rest.err, HasSubstr("80 bodies, "));
+  for (const std::string& channel : SeriesFile(folder / "whole").channels()) {
+    const auto resumed = series("part", channel), whole = series("whole", channel);
+    ASSERT_EQ(resumed.size(), whole.size()) << channel;
+    EXPECT_EQ(std::memcmp(resumed.data(), whole.data(), whole.size() * sizeof(double)), 0) << channel;
+  }
+  EXPECT_EQ(text_of(folder / "part/packing.txt"), text_of(folder / "whole/packing.txt"));
 }
 
 TEST_F(Samples, MayBeACheckpoint) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "grit/error.hpp"
 #include "grit/simulation.hpp"
@@ -130,6 +132,27 @@ TEST(PublicSimulation, ContinuesFromACheckpointWithValuesThatWereSet) {
   other.run();
   EXPECT_EQ(height(other), height(simulation)) << "the same bits";
   EXPECT_GT(height(other), fallen(200)) << "gravity was lowered";
+}
+
+TEST(PublicSimulation, OpensFromACheckpointWithoutItsFiles) {
+  const std::string packing = testing::TempDir() + "grit_opens_from_a_checkpoint.txt";
+  std::ofstream(packing) << "0 0 0 5e-3\n";
+  Description d = drop();
+  d["bodies"]["grains"]["source"] = {{"type", "file"}, {"path", packing}};
+  Simulation simulation(d, options());
+  simulation.step(130);
+  SimulationOptions from = options();
+  from.checkpoint = simulation.save();
+  simulation.run();
+  std::filesystem::remove(packing);
+  EXPECT_THROW(Simulation(d, options()), Error);
+
+  Simulation other(d, from);
+  EXPECT_EQ(other.world().step(), 130u);
+  EXPECT_EQ(other.world().ids().size(), 1u);
+  EXPECT_THROW(other.resume(*from.checkpoint), Error) << "it has begun";
+  other.run();
+  EXPECT_EQ(height(other), height(simulation)) << "the same bits";
 }
 
 TEST(PublicSimulation, ReadsFilesAndTexts) {

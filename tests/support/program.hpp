@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "support/own_folder.hpp"
@@ -100,6 +101,25 @@ inline std::vector<std::string> grit_with(std::vector<std::string> words) {
 inline Outcome grit_in(const std::filesystem::path& folder, std::vector<std::string> words,
                        const std::string& out = "") {
   return Program(grit_with(std::move(words)), folder, out).finish();
+}
+
+/// Waits until the only program that runs meets a condition. Fails if it ends first.
+template <class Condition>
+void wait_until(Condition holds, const std::string& what) {
+  siginfo_t ended{};
+  while (!holds() && ended.si_pid == 0) {
+    ASSERT_EQ(::waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT), 0);
+    std::this_thread::yield();
+  }
+  ASSERT_TRUE(holds()) << "the run has ended without " << what << "; does it still take long enough?";
+}
+
+/// Interrupts a run of grit when it has written a file.
+inline void interrupt_after(Program& program, const std::filesystem::path& file, Outcome& outcome) {
+  ASSERT_NO_FATAL_FAILURE(wait_until([&] { return std::filesystem::exists(file); }, file.filename().string()));
+  program.interrupt();
+  outcome = program.finish();
+  ASSERT_EQ(outcome.status, 130) << outcome.err;
 }
 
 inline Outcome shell(const std::filesystem::path& folder, const std::string& script) {

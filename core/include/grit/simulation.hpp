@@ -27,6 +27,9 @@ struct SimulationOptions {
   std::vector<std::string> sets;  ///< changes of the description, "/pointer=value", in order
   /// Folders searched for plugins, before those of GRIT_PLUGIN_PATH and those next to the library.
   std::vector<std::string> plugin_path;
+  /// Resumes from this state of a simulation of the same description, as resume() does. Bodies are not made first: a
+  /// sample from which the simulation began, or files of bodies, may have been removed.
+  std::optional<Checkpoint> checkpoint = {};
 };
 
 /// Progress of the present stage.

@@ -177,8 +177,9 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     if (!checkpoint) job.existing = Existing::overwrite;
   }
 
-  Prepared prepared = job.opened->prepare(picture_state(description));
-  if (!prepared.note.empty() && !checkpoint) say(prepared.note);
+  const StateRequest state = picture_state(description);
+  Prepared prepared = checkpoint ? job.opened->prepare_to_resume(state) : job.opened->prepare(state);
+  if (!prepared.note.empty()) say(prepared.note);
   ResultsFolder results(results_of(job, std::move(facts), prepared.bodies));
   std::optional<Watch> watch;  // before the simulation, which makes threads
   if (listener) watch.emplace(*listener, folder);
@@ -189,9 +190,6 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   });
 
   Simulation simulation(std::make_unique<Simulation::Parts>(job.opened, std::move(prepared), threads, &curves));
-  const std::size_t count = simulation.world().positions().size();
-  say(std::to_string(count) + (count == 1 ? " body, " : " bodies, ") + std::to_string(threads) +
-      (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
   simulation.interrupt_when([&] { return interrupted.load(); });
   simulation.on_checkpoint([&](const Checkpoint& now) { results.checkpoint(now); },
                            description.output.checkpoint_every);
@@ -204,6 +202,8 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     say("continues from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
     simulation.resume(*checkpoint);
   }
+  say(counted(simulation.world().positions().size(), "body", "bodies") + ", " + counted(threads, "thread", "threads") +
+      ", results in " + folder.string());
   const RunSummary summary = run_or_advise(simulation, job);
   bar.end();
 

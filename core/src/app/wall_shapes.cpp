@@ -88,7 +88,7 @@ std::vector<WallShape> wall_shapes(const Scene& scene, LiveGeometries geometries
   std::map<std::string, std::vector<WallShape>> shapes;
   for (const auto& [name, geometry] : geometries.all()) {
     drawn[name] = {geometry, triangles(*geometry)};
-    shapes[name] = {{name, drawn[name].first}};
+    shapes[name] = {{.name = name, .triangles = drawn[name].first, .clipped = endless_across(*geometry) >= 0}};
   }
   CurrentScene current(start, scene.stages);
   for (const StageDescription& stage : start.stages) {
@@ -98,7 +98,7 @@ std::vector<WallShape> wall_shapes(const Scene& scene, LiveGeometries geometries
       const Drawn& at_first = drawn.at(name);
       if (geometry == at_first.geometry) continue;
       if (auto now = triangles(*geometry); now != at_first.first)
-        shapes[name].push_back({name, std::move(now), stage.name});
+        shapes[name].push_back({name, std::move(now), stage.name, endless_across(*geometry) >= 0});
     }
   }
   std::vector<WallShape> all;

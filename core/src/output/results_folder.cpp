@@ -2,6 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "bodies/packing_file.hpp"
 #include "format/duration.hpp"
 #include "format/number.hpp"
@@ -143,6 +146,14 @@ void ResultsFolder::serialize(Archive& archive) {
     for (const Kept& kept : kept_) resumed_.steps.push_back(kept.steps), resumed_.values.push_back(kept.values);
   }
   archive(resumed_, run_json_);
+  // A resumed run does not make the first bodies again.
+  const auto is_clipped = [](const WallShape& shape) { return shape.clipped; };
+  std::vector<WallShape> clipped;
+  std::ranges::copy_if(options_.walls, std::back_inserter(clipped), is_clipped);
+  archive(clipped);
+  if (!archive.restoring()) return;
+  std::erase_if(options_.walls, is_clipped);
+  std::ranges::move(clipped, std::back_inserter(options_.walls));
 }
 
 void ResultsFolder::checkpoint(const Checkpoint& checkpoint) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "grit/archive.hpp"
 #include "grit/world.hpp"
 
 namespace grit {
@@ -14,6 +15,8 @@ struct WallShape {
   std::string name;
   std::vector<Vec3> triangles;  ///< three corners each [m]
   std::string stage = {};       ///< stage with this shape; empty: all stages without a shape of their own
+  bool clipped = false;         ///< an unbounded plane, drawn in a box that may be that of the first bodies
+  void serialize(Archive& archive) { archive(name, triangles, stage, clipped); }
 };
 
 /// The triangles of a wall at its present position; none if no shape has its name.

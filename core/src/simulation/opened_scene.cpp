@@ -16,4 +16,10 @@ Prepared OpenedScene::prepare(StateRequest more) const {
                           [&] { return grit::prepare(live, *registry, requested_state(live.components(), more)); });
 }
 
+Prepared OpenedScene::prepare_to_resume(StateRequest more) const {
+  Bodies none;
+  none.finish(requested_state(live.components(), more));
+  return none;
+}
+
 }  // namespace grit

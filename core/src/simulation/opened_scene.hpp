@@ -17,6 +17,9 @@ struct OpenedScene {
   /// From which a simulation starts: the bodies of the description or of its sample, with the state requested by
   /// components and by `more`. Throws DescriptionError, FileError.
   Prepared prepare(StateRequest more = {}) const;
+  /// The same for a simulation that resumes: no bodies. They are in the checkpoint, as are walls and cell of a sample,
+  /// so that nothing is read.
+  Prepared prepare_to_resume(StateRequest more = {}) const;
 
   std::shared_ptr<const Registry> registry;
   Scene scene;

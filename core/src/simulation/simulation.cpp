@@ -10,10 +10,15 @@
 namespace grit {
 namespace {
 
-std::unique_ptr<Simulation::Parts> made(std::shared_ptr<const Registry> registry, Document document, unsigned threads) {
+std::unique_ptr<Simulation::Parts> made(std::shared_ptr<const Registry> registry, Document document,
+                                        const SimulationOptions& options) {
   Scene scene = read_scene(std::move(document), *registry);
   const auto opened = std::make_shared<OpenedScene>(std::move(registry), std::move(scene));
-  return std::make_unique<Simulation::Parts>(opened, opened->prepare(), threads);
+  const bool resumes = options.checkpoint.has_value();
+  auto parts = std::make_unique<Simulation::Parts>(opened, resumes ? opened->prepare_to_resume() : opened->prepare(),
+                                                   options.threads);
+  if (resumes) parts->resume(*options.checkpoint);
+  return parts;
 }
 
 }  // namespace
@@ -26,19 +31,19 @@ Simulation::~Simulation() = default;
 Simulation Simulation::open(const std::filesystem::path& file, const SimulationOptions& options) {
   auto registry = standard_registry(options.plugin_path);
   Document document = load_document(file, options.sets, *registry);
-  return Simulation(made(std::move(registry), std::move(document), options.threads));
+  return Simulation(made(std::move(registry), std::move(document), options));
 }
 
 Simulation Simulation::from_text(const std::string& text, const SimulationOptions& options, const std::string& name) {
   auto registry = standard_registry(options.plugin_path);
   Document document = expanded_document(Document::parse(text, name), options.sets, *registry);
-  return Simulation(made(std::move(registry), std::move(document), options.threads));
+  return Simulation(made(std::move(registry), std::move(document), options));
 }
 
 Simulation::Simulation(const Description& description, const SimulationOptions& options) {
   auto registry = standard_registry(options.plugin_path);
   Document document = expanded_document(Document(description, "description"), options.sets, *registry);
-  parts_ = made(std::move(registry), std::move(document), options.threads);
+  parts_ = made(std::move(registry), std::move(document), options);
 }
 
 Forecast Simulation::check() {
