@@ -474,6 +474,10 @@ TEST_F(Samples, SayWhatCannotBeTakenOver) {
   refuses(
       {"/bodies/grains=null", R"(/bodies/others={"type": "sphere", "material": "sand", "source": {"type": "sample"}})"},
       HasSubstr("has a group \"grains\", which is not described"));
+  refuses({"/bodies/grains/velocity=[1, 0, 0]"},
+          AllOf(HasSubstr("/bodies/grains/velocity"),
+                HasSubstr("found a velocity of bodies that come from a sample; allowed is none")));
+  refuses({"/bodies/grains/overlap=0.1"}, AllOf(HasSubstr("/bodies/grains/overlap"), HasSubstr("remove overlap")));
   refuses({"/begin=null"}, AllOf(HasSubstr("/bodies/grains/source"), HasSubstr("without /begin")));
 }
 

@@ -185,7 +185,7 @@ void check_groups(const SceneDescription& scene, const Complain& complain) {
   for (const auto& [name, probe] : scene.probes) check("probes/" + name, probe.groups);
 }
 
-/// Reports groups from a sample without one, and a sample of which no group is used.
+/// Reports groups from a sample without one, settings that the sample gives, and a sample of which no group is used.
 void check_sample(const SceneDescription& scene, const Complain& complain) {
   bool used = false;
   for (const auto& [name, group] : scene.bodies) {
@@ -197,6 +197,12 @@ void check_sample(const SceneDescription& scene, const Complain& complain) {
     if (!group.stage.empty())
       complain("bodies/" + name + "/stage", "a group of a sample that appears in a stage",
                "the start of the run; remove stage");
+    if (!group.velocity.isZero(0.0))
+      complain("bodies/" + name + "/velocity", "a velocity of bodies that come from a sample",
+               "none: they keep that of the sample; remove velocity");
+    if (group.overlap != BodiesDescription::usual_overlap)
+      complain("bodies/" + name + "/overlap", "a maximum overlap of bodies that come from a sample",
+               "none: it is for bodies that appear in a stage; remove overlap");
   }
   if (scene.begin && !used)
     complain("begin", "a sample of which no group of bodies is used",
