@@ -5,6 +5,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "output/read_frames.hpp"
 #include "output/read_results.hpp"
@@ -16,6 +18,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 /// Grains in a box under a lid that presses on them.
@@ -125,6 +128,24 @@ class Samples : public testing::Test {
   std::vector<double> series(const std::string& out, const std::string& channel) const {
     return SeriesFile(folder / out).channel(channel).values;
   }
+  /// The run "test" begins with the contacts at the end of "sample", and stays at rest.
+  void expect_same_contacts() const {
+    const double pressure = series("sample", "walls/lid_pressure").back();
+    ASSERT_NEAR(pressure, 1e4, 10);
+    EXPECT_NEAR(series("test", "walls/lid_pressure").front(), pressure, 1e-6 * pressure);
+    for (const char* contacts : {"packing/coordination_number", "packing/mean_contact_force"})
+      EXPECT_NEAR(series("test", contacts).front(), series("sample", contacts).back(),
+                  1e-9 * series("sample", contacts).back());
+    for (const char* energy : {"energy/elastic_normal", "energy/elastic_shear", "energy/elastic_rolling"}) {
+      ASSERT_GT(series("sample", energy).back(), 0);
+      EXPECT_NEAR(series("test", energy).front(), series("sample", energy).back(),
+                  1e-6 * series("sample", energy).back())
+          << energy;
+    }
+    // No spring was lost.
+    const auto kinetic = series("test", "energy/kinetic");
+    EXPECT_LT(*std::ranges::max_element(kinetic), 1e-4 * series("test", "energy/elastic_normal").front());
+  }
 
   OwnFolder folder;
 };
@@ -133,20 +154,7 @@ TEST_F(Samples, GoOnAtTheSameStress) {
   prepare_sample();
   const auto test = run("test.json", "test");
   ASSERT_EQ(test.status, 0) << test.err;
-  const double pressure = series("sample", "walls/lid_pressure").back();
-  ASSERT_NEAR(pressure, 1e4, 10);
-  EXPECT_NEAR(series("test", "walls/lid_pressure").front(), pressure, 1e-6 * pressure);
-  for (const char* contacts : {"packing/coordination_number", "packing/mean_contact_force"})
-    EXPECT_NEAR(series("test", contacts).front(), series("sample", contacts).back(),
-                1e-9 * series("sample", contacts).back());
-  for (const char* energy : {"energy/elastic_normal", "energy/elastic_shear", "energy/elastic_rolling"}) {
-    ASSERT_GT(series("sample", energy).back(), 0);
-    EXPECT_NEAR(series("test", energy).front(), series("sample", energy).back(), 1e-6 * series("sample", energy).back())
-        << energy;
-  }
-  // It stays at rest: no spring was lost.
-  const auto kinetic = series("test", "energy/kinetic");
-  EXPECT_LT(*std::ranges::max_element(kinetic), 1e-4 * series("test", "energy/elastic_normal").front());
+  expect_same_contacts();
   const auto positions = series("test", "walls/lid_position"), before = series("sample", "walls/lid_position");
   EXPECT_NEAR(positions.front() + positions[2], before[before.size() - 3] + before.back(), 1e-9);
   EXPECT_NEAR(positions.back(), before.back(), 1e-7);
@@ -199,6 +207,59 @@ TEST_F(Samples, MayBeACheckpoint) {
   const auto failed = run("prepare.json", "sample", {"/stages/0/limit=20 ms"});
   ASSERT_EQ(failed.status, 4) << failed.err;
   refuses({}, HasSubstr("holds no final.h5"));
+
+  auto stages = json::parse(prepare).at("stages");
+  stages.push_back({{"name", "stay"}, {"until", {{"type", "steps"}, {"value", 10000000}}}, {"limit", "10 h"}});
+  {
+    Program program(grit_with({"run", "prepare.json", "--no-report", "--overwrite", "--out", "sample", "--set",
+                               "/stages=" + stages.dump(), "--set", R"(/output={"frames": {"every_steps": 2000}})"}),
+                    folder.path());
+    ASSERT_TRUE(program.wait_for("stage \"press\" ended"));
+    program.interrupt();
+    const auto outcome = program.finish();
+    ASSERT_EQ(outcome.status, 130) << outcome.err;
+  }
+  refuses({}, HasSubstr("begin at its last checkpoint with \"at\": \"checkpoint\""));
+  const auto test = run("test.json", "test", {"/begin/at=checkpoint"});
+  ASSERT_EQ(test.status, 0) << test.err;
+  expect_same_contacts();
+}
+
+/// The end of a sample has positions and velocities of one instant, also of clumps and in a cell that deforms. A last
+/// stage of one step begins with a neighbour search: bodies that a search moves by a period change their velocity.
+TEST_F(Samples, MoveOnWithTheSameEnergies) {
+  folder.write("stir.json", stir), folder.write("stir_on.json", stir_on);
+  folder.write("shear.json", shear), folder.write("shear_on.json", shear_on);
+  const std::string
+      energy = R"(/probes/energy={"type": "energy", "every_time": "1 ms"})",
+      sink =
+          R"(/engines/sink={"type": "sink", "region": {"type": "half-space", "point": [0, 0, -1], "normal": [0, 0, 1]}})";
+  for (const auto& [name, text, until] : {std::tuple("stir", stir, "60 ms"), std::tuple("shear", shear, "40 ms")}) {
+    SCOPED_TRACE(name);
+    auto stages = json::parse(text).at("stages");
+    stages[0]["until"]["value"] = until;
+    stages.push_back({{"name", "sort"}, {"until", {{"type", "steps"}, {"value", 1}}}, {"limit", "1 s"}});
+    const auto before = run(name + std::string(".json"), "before", {energy, sink, "/stages=" + stages.dump()});
+    ASSERT_EQ(before.status, 0) << before.err;
+    const auto expect_energies = [&](const std::vector<std::string>& sets, double kinetic, double normal,
+                                     double shear) {
+      std::vector<std::string> all{energy, "/begin/from=before", "/begin/at=end", "/begin/frame=-1"};
+      all.insert(all.end(), sets.begin(), sets.end());
+      const auto on = run(name + std::string("_on.json"), "on", all);
+      ASSERT_EQ(on.status, 0) << on.err;
+      for (const auto& [channel, factor] :
+           {std::pair("energy/kinetic", kinetic), std::pair("energy/elastic_normal", normal),
+            std::pair("energy/elastic_shear", shear)}) {
+        const double wanted = factor * series("before", channel).back();
+        ASSERT_GT(wanted, 0);
+        EXPECT_NEAR(series("on", channel).front(), wanted, 1e-12 * wanted) << channel;
+      }
+    };
+    expect_energies({}, 1, 1, 1);
+    expect_energies({"/materials/sand/density=5200"}, 2, 1, 1);
+    // Overlaps and shear forces are kept.
+    expect_energies({"/materials/sand/contact_modulus=20 MPa"}, 1, 2, 0.5);
+  }
 }
 
 TEST_F(Samples, MayBeAFrame) {
@@ -216,6 +277,9 @@ TEST_F(Samples, MayBeAFrame) {
     return test.err;
   };
   EXPECT_THAT(begin({"/begin/frame=5"}), HasSubstr("begins from frame 5 of "));
+  const auto checked = grit({"check", "test.json", "--set", "/begin/at=frame", "--set", "/begin/frame=5"});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_THAT(checked.out, ContainsRegex("sample\n  begins from frame 5 of .*; frames hold no contact springs"));
   const Frame before = read_frame(folder / "sample/frames/000005.h5"),
               after = read_frame(folder / "test/frames/000000.h5");
   EXPECT_EQ(after.time, 0);
@@ -303,61 +367,6 @@ TEST_F(Samples, FramesHoldClumpsWallsAndTheCell) {
           AllOf(HasSubstr("/bodies/rods"), HasSubstr("has clumps of 2 spheres, here it has others")), "on.json");
 }
 
-TEST_F(Samples, FramesHoldTheTiltOfACellThatShears) {
-  folder.write("shear.json", shear), folder.write("on.json", shear_on);
-  const auto sheared = run("shear.json", "sheared");
-  ASSERT_EQ(sheared.status, 0) << sheared.err;
-  const auto on = run("on.json", "on");
-  ASSERT_EQ(on.status, 0) << on.err;
-  const auto path_before = folder / "sheared/frames/000004.h5", path_after = folder / "on/frames/000000.h5";
-  const FrameState before = read_frame_state(path_before), after = read_frame_state(path_after);
-  ASSERT_LT(before.tilt.x(), -1e-3) << "after the tilt of 8 mm was reduced by a period";
-  ASSERT_LT(before.tilt.y(), -1e-3) << "shear along both others moves images along this";
-  ASSERT_LT(before.tilt.z(), -3e-3);
-  EXPECT_EQ(after.tilt, before.tilt);
-  EXPECT_EQ(after.shear_rate, before.shear_rate);
-  EXPECT_EQ(after.strain_rate, before.strain_rate);
-  EXPECT_EQ(after.cell_low, before.cell_low);
-  EXPECT_EQ(after.cell_high, before.cell_high);
-
-  Cell cell{before.cell_low, before.cell_high, {true, true, true}};
-  cell.tilt = before.tilt;
-  const Vec3 middle = 0.5 * (cell.low + cell.high);
-  ASSERT_EQ(after.bodies.size(), 55u);
-  ASSERT_EQ(before.bodies.size(), 55u);
-  std::size_t unmoved = 0;
-  for (std::size_t i = 0; i < 55; ++i) {
-    const FrameBody &now = after.bodies[i], &then = before.bodies[i];
-    EXPECT_EQ(now.id, then.id);
-    EXPECT_EQ(now.radius, then.radius);
-    EXPECT_EQ(now.spin, then.spin);
-    // A neighbour search may have moved it into the cell, by whole periods of the skewed cell.
-    EXPECT_LE((cell.inside(middle + now.position - then.position) - middle).norm(), 1e-14) << i;  // m
-    if (now.position != then.position) continue;
-    EXPECT_EQ(now.velocity, then.velocity);
-    ++unmoved;
-  }
-  EXPECT_GT(unmoved, 40u);
-
-  // Contacts across the skewed sides are the same, in another order.
-  const auto forces = [](const std::filesystem::path& path) {
-    std::vector<double> all = read_frame(path).normal_force;
-    std::ranges::sort(all);
-    return all;
-  };
-  ASSERT_GT(forces(path_before).size(), 60u);
-  EXPECT_THAT(forces(path_after),
-              testing::Pointwise(testing::DoubleNear(1e-9), forces(path_before)));  // N, of up to 0.6
-
-  // The shear goes on: tilts over side lengths grow by the shear, whatever the isotropic strain.
-  const auto path_end = folder / "on/frames/000001.h5";
-  const FrameState end = read_frame_state(path_end);
-  const double time = time_of_frame(path_end), length = end.cell_high.x() - end.cell_low.x(),
-               length_before = before.cell_high.x() - before.cell_low.x();
-  EXPECT_NEAR(end.tilt.x() / length - before.tilt.x() / length_before, 20 * time, 1e-4);
-  EXPECT_NEAR(end.tilt.z() / length - before.tilt.z() / length_before, -10 * time, 1e-4);
-}
-
 TEST_F(Samples, HaveTheMassesOfTheScene) {
   const std::string
       mass =
@@ -424,6 +433,61 @@ TEST_F(Samples, HaveTheShapesOfTheScene) {
             HasSubstr("has single spheres, here it has clumps of 2 spheres; use the type and shape of the sample")));
 }
 
+TEST_F(Samples, FramesHoldTheTiltOfACellThatShears) {
+  folder.write("shear.json", shear), folder.write("on.json", shear_on);
+  const auto sheared = run("shear.json", "sheared");
+  ASSERT_EQ(sheared.status, 0) << sheared.err;
+  const auto on = run("on.json", "on");
+  ASSERT_EQ(on.status, 0) << on.err;
+  const auto path_before = folder / "sheared/frames/000004.h5", path_after = folder / "on/frames/000000.h5";
+  const FrameState before = read_frame_state(path_before), after = read_frame_state(path_after);
+  ASSERT_LT(before.tilt.x(), -1e-3) << "after the tilt of 8 mm was reduced by a period";
+  ASSERT_LT(before.tilt.y(), -1e-3) << "shear along both others moves images along this";
+  ASSERT_LT(before.tilt.z(), -3e-3);
+  EXPECT_EQ(after.tilt, before.tilt);
+  EXPECT_EQ(after.shear_rate, before.shear_rate);
+  EXPECT_EQ(after.strain_rate, before.strain_rate);
+  EXPECT_EQ(after.cell_low, before.cell_low);
+  EXPECT_EQ(after.cell_high, before.cell_high);
+
+  Cell cell{before.cell_low, before.cell_high, {true, true, true}};
+  cell.tilt = before.tilt;
+  const Vec3 middle = 0.5 * (cell.low + cell.high);
+  ASSERT_EQ(after.bodies.size(), 55u);
+  ASSERT_EQ(before.bodies.size(), 55u);
+  std::size_t unmoved = 0;
+  for (std::size_t i = 0; i < 55; ++i) {
+    const FrameBody &now = after.bodies[i], &then = before.bodies[i];
+    EXPECT_EQ(now.id, then.id);
+    EXPECT_EQ(now.radius, then.radius);
+    EXPECT_EQ(now.spin, then.spin);
+    // A neighbour search may have moved it into the cell, by whole periods of the skewed cell.
+    EXPECT_LE((cell.inside(middle + now.position - then.position) - middle).norm(), 1e-14) << i;  // m
+    if (now.position != then.position) continue;
+    EXPECT_EQ(now.velocity, then.velocity);
+    ++unmoved;
+  }
+  EXPECT_GT(unmoved, 40u);
+
+  // Contacts across the skewed sides are the same, in another order.
+  const auto forces = [](const std::filesystem::path& path) {
+    std::vector<double> all = read_frame(path).normal_force;
+    std::ranges::sort(all);
+    return all;
+  };
+  ASSERT_GT(forces(path_before).size(), 60u);
+  EXPECT_THAT(forces(path_after),
+              testing::Pointwise(testing::DoubleNear(1e-9), forces(path_before)));  // N, of up to 0.6
+
+  // The shear goes on: tilts over side lengths grow by the shear, whatever the isotropic strain.
+  const auto path_end = folder / "on/frames/000001.h5";
+  const FrameState end = read_frame_state(path_end);
+  const double time = time_of_frame(path_end), length = end.cell_high.x() - end.cell_low.x(),
+               length_before = before.cell_high.x() - before.cell_low.x();
+  EXPECT_NEAR(end.tilt.x() / length - before.tilt.x() / length_before, 20 * time, 1e-4);
+  EXPECT_NEAR(end.tilt.z() / length - before.tilt.z() / length_before, -10 * time, 1e-4);
+}
+
 TEST_F(Samples, SayWhichFramesThereAre) {
   ASSERT_EQ(
       run("prepare.json", "sample", {R"(/output={"frames": {"every_time": "10 ms"}})", "/stages/0/limit=25 ms"}).status,
@@ -462,11 +526,14 @@ TEST_F(Samples, MayChangeMaterialsWallsAndStages) {
 TEST_F(Samples, SayWhatCannotBeTakenOver) {
   prepare_sample();
   refuses({"/begin/from=nothing"},
-          AllOf(HasSubstr("/begin/from"), HasSubstr("nothing: is no folder; name the folder of results")));
+          AllOf(HasSubstr("/begin/from"), HasSubstr("nothing: is not a folder; name the folder of results")));
   refuses({"/begin/at=checkpoint"}, HasSubstr("begin at its end with \"at\": \"end\""));
   refuses({"/contacts/type=linear-frictional", "/materials/sand/rolling_stiffness=null",
            "/materials/sand/rolling_limit=null"},
-          AllOf(HasSubstr("/contacts"), HasSubstr("have the history \"rolling"), HasSubstr("\"springs\": \"drop\"")));
+          AllOf(HasSubstr("/contacts"),
+                HasSubstr(" store rolling_x, rolling_y, rolling_z, which the contact law \"linear-frictional\" "
+                          "does not store with these materials"),
+                HasSubstr("\"springs\": \"drop\"")));
   refuses({R"(/domain={"low": [0, 0, 0], "high": [0.01, 0.01, 0.03], "periodic": [true, true, false]})"},
           AllOf(HasSubstr("/domain/periodic"), HasSubstr("is periodic along ")));
   refuses({R"(/bodies/others={"type": "sphere", "material": "sand", "source": {"type": "sample"}})"},
