@@ -59,8 +59,11 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
               << (one.file.empty() ? "  built in" : "") << '\n';
 
   const unsigned threads = options.threads();
+  std::string note;  // of the sample
   Kernel kernel(at_first_instant(scene.document, [&] {
-    return Kernel(description, components, prepare(live, registry, run_state(description, components)), threads);
+    Prepared prepared = prepare(live, registry, run_state(description, components));
+    note = prepared.note;
+    return Kernel(description, components, std::move(prepared), threads);
   }));
   at_first_instant(scene.document, [&] { kernel.find_forces(); });
   std::vector<ProbeGroup> probes;
@@ -70,6 +73,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   check_fields(scene.document, description, kernel.world());
   const std::size_t bodies = kernel.world().positions().size();
 
+  if (!note.empty()) std::cout << "\nsample\n  " << note << '\n';
   std::cout << "\nbody state besides position, velocity and spin\n";
   for (const std::string& line : state_by_component(description, components)) std::cout << "  " << line << '\n';
   std::cout << "\norder of a step\n  neighbour search if due, contacts of pairs, wall contacts";

@@ -24,7 +24,7 @@ std::filesystem::path file_of(const BeginDescription& begin) {
   auto file = folder / (at_end ? "final.h5" : "checkpoint.h5");
   if (std::filesystem::exists(file)) return file;
   if (!std::filesystem::is_directory(folder))
-    throw PlacedError({"begin", "from"}, folder.string() + ": is no folder; name the folder of results of a run");
+    throw PlacedError({"begin", "from"}, folder.string() + ": is not a folder; name the folder of results of a run");
   const bool frames = std::filesystem::exists(folder / "frames");
   const bool other = std::filesystem::exists(folder / (at_end ? "checkpoint.h5" : "final.h5"));
   throw PlacedError({"begin", "from"},
@@ -36,15 +36,19 @@ std::filesystem::path file_of(const BeginDescription& begin) {
                                          : "; name the folder of results of a run"));
 }
 
-void check_springs(const ContactLaw& law, const std::vector<StateField>& fields, const std::string& sample,
-                   SampleFaults& faults) {
+/// `fields`: of the contact history of the sample.
+void check_springs(const ContactLaw& law, const std::string& law_name, const std::vector<StateField>& fields,
+                   const std::string& sample, SampleFaults& faults) {
   const std::vector<StateField> kept = law.state();
+  std::string lacking;
   for (const StateField& field : fields)
     if (std::ranges::find(kept, field.name, &StateField::name) == kept.end())
-      faults.push_back({{"contacts"},
-                        "contacts of " + sample + " have the history \"" + field.name +
-                            "\", which the contact law does not have with these materials; use the law and parameters "
-                            "of the sample, or start without springs: \"begin\": {\"springs\": \"drop\"}"});
+      lacking += (lacking.empty() ? "" : ", ") + field.name;
+  if (lacking.empty()) return;
+  faults.push_back({{"contacts"},
+                    "contacts of " + sample + " store " + lacking + ", which the contact law \"" + law_name +
+                        "\" does not store with these materials; use the law and parameters of the sample, or "
+                        "start without springs: \"begin\": {\"springs\": \"drop\"}"});
 }
 
 void check_shapes(const Bodies& bodies, SampleGroups& groups) {
@@ -95,7 +99,7 @@ Prepared prepared_sample(const LiveScene& live, const Registry& registry, StateR
   if (begin.springs == "keep") {
     ContactLaw& law = *live.components().law;
     law.mix(materials_in_use(scene, material_names(scene)), materials_of_bodies(scene));
-    check_springs(law, fields, sample, faults);
+    check_springs(law, scene.contacts.type(), fields, sample, faults);
   } else {
     prepared.sample->pairs = {}, prepared.sample->wall_contacts = {};
   }

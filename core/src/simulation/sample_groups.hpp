@@ -5,6 +5,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "bodies/group_builder.hpp"
 #include "simulation/live_scene.hpp"
