@@ -206,8 +206,8 @@ struct BodiesDescription {
   double overlap = usual_overlap;  ///< of the smaller radius
   std::optional<DensityScalingDescription> density_scaling;
   OneOf<CloudSource, FileSource, LatticeSource, ListSource, StreamSource, SampleSource> source{"source of bodies"};
-  /// m, diameter below which bodies have more mass; 0: none
   bool is_from_sample() const { return std::holds_alternative<SampleSource>(source.value()); }
+  /// m, diameter below which bodies have more mass; 0: none
   double scaled_below() const { return density_scaling ? density_scaling->below : 0; }
   explicit BodiesDescription(const Registry& registry);
   void declare(Parameters& p);
