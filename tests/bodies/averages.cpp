@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "bodies/kinetic_energy.hpp"
 #include "bodies/random.hpp"
 #include "grit/testing/fake_world.hpp"
 
@@ -140,6 +141,13 @@ TEST(MeanStress, OfAnEmptyOrEndlessBoxIsZero) {
   const FakeWorld world = simple_cubic(2, 1, Vec3::Ones());
   EXPECT_EQ(mean_stress(world, {Vec3::Zero(), Vec3(1, 1, 0)}).norm(), 0);
   EXPECT_EQ(mean_stress(world, {Vec3::Zero(), Vec3(1, 1, infinity)}).norm(), 0);
+}
+
+TEST(MeanFlow, CarriesAVelocityByItsGradient) {
+  const Vec3 v(1, 2, 3);
+  const MeanFlow stretches{{0.1, 0, -0.2}, Vec3::Zero()}, shears{{0.1, 0, -0.2}, {4, 5, 6}};
+  EXPECT_LT((stretches.carried(v, 0.01) - Vec3(1.001, 2, 2.994)).norm(), 1e-15);
+  EXPECT_LT((shears.carried(v, 0.01) - Vec3(1.001 + 0.01 * (4 * 2 + 5 * 3), 2 + 0.01 * 6 * 3, 2.994)).norm(), 1e-15);
 }
 
 TEST(Equilibrium, BringsVelocitiesUpToTime) {

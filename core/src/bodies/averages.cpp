@@ -97,14 +97,6 @@ double kinetic_energy_of(const ClumpView& clump, double later) {
 
 double kinetic_energy(const World& world, double half_step, const MeanFlow& flow, std::size_t first, std::size_t last) {
   const auto velocities = world.velocities(), spins = world.spins(), forces = world.forces(), moments = world.moments();
-  const Vec3 stretching = Vec3::Ones() + half_step * flow.strain_rate;
-  const bool shears = !flow.shear_rate.isZero(0.0);
-  const auto flowing = [&](const Vec3& v) -> Vec3 {
-    const Vec3 stretched = stretching.cwiseProduct(v);
-    if (!shears) return stretched;
-    const Vec3& rate = flow.shear_rate;
-    return stretched + half_step * Vec3(rate[0] * v.y() + rate[1] * v.z(), rate[2] * v.z(), 0);
-  };
   const auto energy = [half_step](const Row& velocity, const Vec3& force, const Vec3& brought_on) {
     return velocity.w > 0 ? 0.5 / velocity.w * (brought_on + half_step * velocity.w * force).squaredNorm() : 0.0;
   };
@@ -113,12 +105,12 @@ double kinetic_energy(const World& world, double half_step, const MeanFlow& flow
   double sum = 0;
   for (std::size_t c = first; c < std::min(last, clumps.size()); ++c) {
     ClumpView clump = clumps[c];
-    clump.velocity = flowing(clump.velocity);
+    clump.velocity = flow.carried(clump.velocity, half_step);
     sum += kinetic_energy_of(clump, half_step);
   }
   for (std::size_t i = first; i < std::min(last, velocities.size()); ++i)
     if (clump_of.empty() || clump_of[i] == no_clump)
-      sum += energy(velocities[i], xyz(forces[i]), flowing(xyz(velocities[i]))) +
+      sum += energy(velocities[i], xyz(forces[i]), flow.carried(xyz(velocities[i]), half_step)) +
              energy(spins[i], xyz(moments[i]), xyz(spins[i]));
   return sum;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "bodies/kinetic_energy.hpp"
 #include "contact/search.hpp"
 
 namespace grit {
@@ -24,7 +25,7 @@ Vec3 DeformingCell::mean_flow(const Vec3& place) const {
 }
 
 Vec3 DeformingCell::shear_flow(const Vec3& shear_rate, const Vec3& place) {
-  return {shear_rate[0] * place.y() + shear_rate[1] * place.z(), shear_rate[2] * place.z(), 0};
+  return MeanFlow{.shear_rate = shear_rate}.shear(place);
 }
 
 Mat3 DeformingCell::columns(const Vec3& periods, const Vec3& tilt) {

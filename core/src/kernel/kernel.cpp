@@ -83,13 +83,10 @@ void Kernel::synchronise_velocities() {
   const auto forces = view_.forces(), moments = view_.moments();
   const auto clumps = view_.clumps();
   const Cell& cell = state_.cell.cell();
-  const Vec3 stretching = Vec3::Ones() + half * cell.strain_rate;
-  const auto flowing = [&](const Vec3& v) -> Vec3 {
-    return stretching.cwiseProduct(v) + half * DeformingCell::shear_flow(cell.shear_rate, v);
-  };
+  const MeanFlow flow{cell.strain_rate, cell.shear_rate};
   for (std::size_t c = 0; c < clumps.size(); ++c) {
     Clump& clump = bodies.clumps.clump[c];
-    clump.velocity = flowing(clump.velocity) + half * clump.inverse_mass * clumps[c].force;
+    clump.velocity = flow.carried(clump.velocity, half) + half * clump.inverse_mass * clumps[c].force;
     clump.momentum += half * clumps[c].moment;
     clump.spin = clump.spin_of(clump.momentum);
   }
@@ -104,7 +101,7 @@ void Kernel::synchronise_velocities() {
       v = clump.velocity + w.cross(clump.axes * own.place) -
           state_.cell.image_velocities(state_.time.previous_dt) * periods;
     } else {
-      v = flowing(xyz(velocity)) + half * velocity.w * xyz(forces[i]);
+      v = flow.carried(xyz(velocity), half) + half * velocity.w * xyz(forces[i]);
       w = xyz(spin) + half * spin.w * xyz(moments[i]);
     }
     velocity = {v.x(), v.y(), v.z(), velocity.w}, spin = {w.x(), w.y(), w.z(), spin.w};
