@@ -48,6 +48,19 @@ TEST(Guards, RefusePeriodsThatAreTooShort) {
   EXPECT_EQ(period(1.01 * shortest), Guard::none);
 }
 
+TEST(Guards, AdviseOnAServoThatMayHaveShortenedAPeriod) {
+  Cell cell = box({true, false, false});
+  cell.high.x() = cell.low.x() + 3 * radius;
+  State state = two_spheres(2.1 * radius, cell);
+  state.settings.cell_servo.emplace();
+  const auto advice = [&] { return failure([&] { check_periods(state); }).second; };
+  const auto longer = testing::HasSubstr("make the domain longer along this axis"),
+             target = testing::HasSubstr("the target of /domain/servo may be beyond what the bodies can bear");
+  EXPECT_THAT(advice(), testing::AllOf(longer, testing::Not(target))) << "it was too short from the start";
+  state.time.step = 100;
+  EXPECT_THAT(advice(), testing::AllOf(longer, target));
+}
+
 TEST(Guards, LimitTheGrowthOfAStep) {
   const State state = two_spheres(0.004);
   EXPECT_EQ(failure([&] { check_growth(state, 0.049 * radius); }).first, Guard::none);

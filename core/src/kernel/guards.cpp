@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <string>
 
 #include "format/number.hpp"
 #include "kernel/failure.hpp"
@@ -58,13 +59,15 @@ void check_periods(const State& state) {
   const double shortest = NeighbourLists::shortest_period(state.bodies, state.statistics, state.reaches());
   for (int k = 0; k < 3; ++k)
     if (const double period = state.cell.lengths()[k]; state.cell.cell().periodic[k] && period < shortest)
-      fail(state, Guard::period, {"domain"},
-           "/domain has a period of " + number(period) + " m along " + "xyz"[k] + ", below the minimum of " +
-               number(shortest) + " m, twice the reach of the largest body",
-           state.settings.cell_servo
-               ? "the servo of the cell has contracted it: its target may be beyond what the bodies can bear, or its "
-                 "max_strain_rate too large"
-               : "make the domain longer along this axis, use walls instead, or compress it less");
+      fail(
+          state, Guard::period, {"domain"},
+          "/domain has a period of " + number(period) + " m along " + "xyz"[k] + ", below the minimum of " +
+              number(shortest) + " m, twice the reach of the largest body",
+          std::string("make the domain longer along this axis, use walls instead, or compress it less") +
+              (state.settings.cell_servo && state.time.step > 0
+                   ? "; the target of /domain/servo may be beyond what the bodies can bear, or its max_strain_rate too "
+                     "large"
+                   : ""));
 }
 
 void check_growth(const State& state, double distance) {
