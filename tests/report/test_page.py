@@ -31,16 +31,38 @@ SCENE = {
 LISTS = {"listening": {"type": "spectrum", "region_low": [0, 0, 0], "region_high": ["8 mm", "6 mm", "12 mm"], "interval": "0.2 ms", "points": 64, "every_time": "0.2 ms"},
          "forces": {"type": "force-chains", "every_time": "2 ms"}, "moved": {"type": "displacements", "every_time": "2 ms"}}
 SVG = "{http://www.w3.org/2000/svg}"
+WINDOW = 1000, 800  # CSS pixels; a larger one takes longer to draw
 DRAWN = "document.querySelector('figure.grains')?.grains.shownPlaces && document.querySelector('figure.chart[data-drawn]')"
 
 
 def run(folder, name, **changes):
+    """Results with their page, NAME/report.html."""
     write_scene(folder, name, {**SCENE, **changes})
     subprocess.run([GRIT, "run", f"{name}.json", "--out", name, "--threads", "1", "--quiet"], cwd=folder, check=True,
                    stdout=subprocess.DEVNULL)
 
 
+def reads(test):
+    """A test that leaves the page of one run as it is, so that the next one need not open it again."""
+    test.reads = True
+    return test
+
+
+def opens_pages(test):
+    """A test that begins with another page than that of one run."""
+    test.opens_pages = True
+    return test
+
+
+def load_tests(loader, *_):
+    """Those that share a page are the first."""
+    names = loader.getTestCaseNames(Page)
+    return unittest.TestSuite(Page(name) for name in sorted(names, key=lambda name: not hasattr(getattr(Page, name), "reads")))
+
+
 class Page(unittest.TestCase):
+    untouched = False  # whether the page of one run is open, as it was when it was opened
+
     @classmethod
     def setUpClass(cls):
         cls.place = tempfile.TemporaryDirectory(prefix="grit-page-")
@@ -50,8 +72,7 @@ class Page(unittest.TestCase):
         run(cls.folder, "lists", probes=LISTS, output={})
         subprocess.run([GRIT, "report", "one"], cwd=cls.folder, check=True, stdout=subprocess.DEVNULL)
         subprocess.run([GRIT, "report", "one", "two", "--out", "both.html"], cwd=cls.folder, check=True, stdout=subprocess.DEVNULL)
-        subprocess.run([GRIT, "report", "lists"], cwd=cls.folder, check=True, stdout=subprocess.DEVNULL)
-        cls.browser = Browser(CHROMIUM, timeout=150).__enter__()
+        cls.browser = Browser(CHROMIUM, *WINDOW, timeout=150).__enter__()
 
     @classmethod
     def tearDownClass(cls):
@@ -59,7 +80,10 @@ class Page(unittest.TestCase):
         cls.place.cleanup()
 
     def setUp(self):
-        self.open("one/report.html")
+        test = getattr(self, self._testMethodName)
+        if not Page.untouched and not hasattr(test, "opens_pages"):
+            self.open("one/report.html")
+        Page.untouched = hasattr(test, "reads")
 
     def tearDown(self):
         self.assertEqual(self.browser.complaints(), [])
@@ -84,6 +108,7 @@ class Page(unittest.TestCase):
             reader.readAsDataURL(save.last.blob); })""")
         return self.browser.evaluate("save.last.name"), base64.b64decode(address.split(",", 1)[1])
 
+    @opens_pages
     def test_linear_chains_are_lines_of_their_own(self):
         # A column of five in contact, of which three carry more than the mean, and two with a weak contact.
         grains = [{"position": ["4 mm", "3 mm", f"{0.5 + 0.99 * k} mm"], "radius": "0.5 mm"} for k in range(5)]
@@ -91,7 +116,6 @@ class Page(unittest.TestCase):
         run(self.folder, "column", bodies={"grains": {"type": "sphere", "material": "sand", "source": {"type": "list", "bodies": grains}}},
             stages=[{"name": "stand", "until": {"type": "steps", "value": 2}, "limit": "1 s"}], output={"frames": {"every_steps": 2}},
             probes={"packing": {"type": "packing", "every_steps": 1}, "forces": {"type": "force-chains", "every_steps": 1}})
-        subprocess.run([GRIT, "report", "column"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
         self.open("column/report.html")
         lines = f"""(async (name, on) => {{
             const view = {GRAINS};
@@ -167,15 +191,14 @@ class Page(unittest.TestCase):
         self.assertEqual(self.browser.evaluate(unfolded), ["packing"])
         run(self.folder, "named", probes={"energy": {"type": "energy", "every_time": "5 ms"}, **SCENE["probes"]},
             output={"picture": {"x": "packing/time", "y": ["walls/box_pressure", "packing/coordination_number"]}})
-        subprocess.run([GRIT, "report", "named"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
         self.browser.open(self.folder / "named/report.html")
         self.browser.wait("document.querySelector('details.probe')")
         self.assertEqual(self.browser.evaluate(unfolded), ["packing", "walls"])
 
+    @opens_pages
     def test_profiles_name_their_axis_and_the_progress_of_the_test(self):
         run(self.folder, "moving", probes={"packing": SCENE["probes"]["packing"], "moved": LISTS["moved"]},
             output={"picture": {"x": "packing/void_ratio_overall", "y": ["moved/zone_thickness"]}})
-        subprocess.run([GRIT, "report", "moving"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
         self.browser.open(self.folder / "moving/report.html")
         self.browser.wait("document.querySelector('figure.chart')")
         axis, labels = self.browser.evaluate("""(async () => {
@@ -230,6 +253,7 @@ class Page(unittest.TestCase):
         self.press(" ", " ")
         self.browser.wait(f"{frame} === '{last}' && !{GRAINS}.player.playing")
 
+    @reads
     def test_grains_are_those_of_the_frames(self):
         for number in (0, 3):
             shown = self.browser.evaluate(f"""(async () => {{ const frames = {GRAINS}.frames, frame = await frames.frame({number});
@@ -279,6 +303,7 @@ class Page(unittest.TestCase):
     def size_of_png(self):
         return self.browser.evaluate("createImageBitmap(save.last.blob).then(({width, height}) => [width, height])")
 
+    @opens_pages
     def test_files_do_not_depend_on_the_mode_of_the_page(self):
         """Of a width for print, on white, in any window, in light and dark mode."""
         def files():
@@ -302,7 +327,7 @@ class Page(unittest.TestCase):
         try:
             by_night = files()
         finally:
-            self.browser.resize(1400, 1000)
+            self.browser.resize(*WINDOW)
             self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
         for figure, (png, svg) in by_day.items():
             self.assertTrue(svg == by_night[figure][1], f"the SVG of {figure}")
@@ -315,6 +340,7 @@ class Page(unittest.TestCase):
             seen.add(self.saved("figure.grains", "PNG")[1])
         self.assertEqual(len(seen), 5)
 
+    @opens_pages
     def test_runs_share_charts(self):
         self.open("both.html")
         self.assertEqual(self.browser.evaluate("document.querySelector('figure.chart').chart.series.map((one) => one.label)"), ["one", "two"])
@@ -330,6 +356,7 @@ class Page(unittest.TestCase):
         self.assertTrue(name.startswith("two-"))
         self.assertNotEqual(first, second)
 
+    @opens_pages
     def test_runs_of_different_tests_share_charts_where_possible(self):
         formulas = lambda **curves: {"test": {"type": "formula", "every_time": "2 ms", "curves": {name: {"formula": formula} for name, formula in curves.items()}}}
         picture = lambda x: {"output": {"picture": {"x": f"test/{x}", "y": ["test/shared"]}}}
@@ -350,6 +377,7 @@ class Page(unittest.TestCase):
         self.assertTrue(last[0][1] > 0 > last[1][1])
         self.assertNotIn("never", dict(shown), "no run has finite values")
 
+    @opens_pages
     def test_infinite_values_are_gaps(self):
         run(self.folder, "broken", probes={"test": {"type": "formula", "every_time": "1 ms", "curves": {
             "late": {"formula": "time < 0.02 ? 1 / 0 : time < 0.03 ? time : time < 0.04 ? (time - time) / 0 : -time"}}}}, output={})
@@ -372,6 +400,7 @@ class Page(unittest.TestCase):
         self.browser.evaluate(f"{chart}.show([{finite}])")
         self.browser.wait(f"{chart}.view.data('near').length === 1")
 
+    @opens_pages
     def test_a_direction_without_a_number_is_a_gap(self):
         self.browser.open(self.folder / "lists/report.html")
         self.browser.evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
@@ -379,6 +408,7 @@ class Page(unittest.TestCase):
             return chart.outline({shownX: [10, 30, 50], shownY: Float64Array.of(1, Infinity, NaN), s: '0'}).map(({x}) => x === null); })()""")
         self.assertEqual(points, [False] * 5 + [True] * 10 + [False])
 
+    @opens_pages
     def test_spectra_have_logarithmic_axes(self):
         self.browser.open(self.folder / "lists/report.html")
         self.browser.evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
@@ -402,11 +432,13 @@ class Page(unittest.TestCase):
         linear = self.browser.evaluate("[...document.querySelectorAll('figure.chart')].find(({chart}) => chart.name === 'profile').chart.byPowers")
         self.assertFalse(linear)
 
+    @reads
     def test_ticks_of_powers(self):
         for domain, count, wanted in (([1e-3, 1e3], 8, [1e-3, 1e-2, 0.1, 1, 10, 100, 1000]), ([1e-9, 1e9], 5, [1e-8, 1e-4, 1, 1e4, 1e8]), ([30, 400], 5, [50, 100, 200])):
             numpy.testing.assert_allclose(self.browser.evaluate(f"powersWithin({domain}, {count})"), wanted, rtol=1e-12)
         self.assertEqual(self.browser.evaluate("[0.01, 500, 1e5, 2e-7, 1e-12].map(atPower)"), ["0.01", "500", "10⁵", "2·10⁻⁷", "10⁻¹²"])
 
+    @opens_pages
     def test_legends_never_overlap(self):
         names = [f"{'a-rather-long-name-of-a-run-' * (1 + i % 4)}{i}" for i in range(9)]
         for name in names:
@@ -419,13 +451,14 @@ class Page(unittest.TestCase):
                 boxes, below, bottom = self.browser.evaluate("""(() => { const plot = document.querySelector('figure.chart .plot'), box = (one) => { const {left, right, top, bottom} = one.getBoundingClientRect(); return [left, right, top, bottom]; };
                     return [[...plot.querySelectorAll('.legend-names text')].map(box), Math.max(...[...plot.querySelectorAll('.role-axis-title text')].map((one) => box(one)[3])), box(plot.querySelector('svg'))]; })()""")
             finally:
-                self.browser.resize(1400, 1000)
+                self.browser.resize(*WINDOW)
             self.assertEqual(len(boxes), len(names))
             for i, (left, right, top, end) in enumerate(boxes):
                 self.assertTrue(bottom[0] <= left < right <= bottom[1] and below <= top < end <= bottom[3], f"entry {i} at {width}: {boxes[i]} in {bottom} below {below}")
                 for other in boxes[:i]:
                     self.assertTrue(right <= other[0] or other[1] <= left or end <= other[2] + 1 or other[3] <= top + 1, f"entry {i} at {width}")
 
+    @opens_pages
     def test_the_others_are_shown_if_one_grain_is_far_away(self):
         bodies = {**SCENE["bodies"], "lost": {"type": "sphere", "material": "sand", "source": {"type": "list", "bodies": [{"position": ["4 mm", "3 mm", "500 mm"], "radius": "0.5 mm"}]}}}
         run(self.folder, "lost", bodies=bodies)
@@ -439,6 +472,7 @@ class Page(unittest.TestCase):
         self.browser.wait(f"{GRAINS}.layers && {GRAINS}.now === {GRAINS}.painted")
         self.assertGreater(len(set(self.browser.evaluate(f"[...{GRAINS}.layers.values()]"))), 7, "layers are those of the others")
 
+    @opens_pages
     def test_the_view_fits_large_grains_and_walls(self):
         boulder = {"type": "sphere", "material": "sand", "source": {"type": "list", "bodies": [{"position": ["4 mm", "3 mm", "13 mm"], "radius": "2.9 mm"}]}}
         box = {**SCENE["walls"]["box"], "high": ["8 mm", "6 mm", "17 mm"]}
@@ -476,6 +510,7 @@ class Page(unittest.TestCase):
         self.browser.evaluate("document.querySelector('.stage').dispatchEvent(new Event('dblclick'))")
         self.assertEqual(self.browser.evaluate(f"[{GRAINS}.state.zoom, ...{GRAINS}.state.pan]"), [1, 0, 0])
 
+    @opens_pages
     def test_grains_are_coloured_by_a_field_of_a_probe(self):
         picture = {**SCENE["output"]["picture"], "color": "moved/fluctuation/x"}
         run(self.folder, "moved", probes={"packing": SCENE["probes"]["packing"], "moved": LISTS["moved"]},
@@ -507,6 +542,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.browser.evaluate(f"[{MAP}.colours.low, {MAP}.colours.high]"), [0.5, 2])
         self.assertIn("ends set by the description", self.browser.evaluate(f"{MAP}.about.textContent"))
 
+    @opens_pages
     def test_walls_are_coloured_by_the_pressure_on_their_facets(self):
         corners = [(0, 0), (8, 0), (8, 6)], [(0, 0), (8, 6), (0, 6)]
         facets = "".join("facet normal 0 0 1\nouter loop\n" + "".join(f"vertex {x} {y} 0\n" for x, y in three) + "endloop\nendfacet\n" for three in corners)
@@ -552,7 +588,11 @@ class Page(unittest.TestCase):
         by_id, shown = dict(zip(ids, layers)), self.browser.evaluate(f"[[...{GRAINS}.now.id], [...{GRAINS}.shownPlaces]]")
         numpy.testing.assert_allclose(shown[1], [(by_id[one] - 1) / 9 for one in shown[0]], atol=1e-6)
 
+    @opens_pages
     def test_a_graphics_processor_and_none_draw_the_same(self):
+        self.browser.resize(1400, 1000)  # edges, where they differ, are a small part
+        self.addCleanup(self.browser.resize, *WINDOW)
+        self.open("one/report.html")
         for view, zoom, most in (("xz", 1, 0.6), ("yz", 1, 0.6), ("xy", 1, 0.6), ("xz", 12, 0.15)):  # so close that points would be too large
             colours, off, apart = self.browser.evaluate(f"""(async () => {{ const view = {GRAINS}, {{painter}} = view;
                 const {{low, high}} = view.extent(), {{now}} = view, middle = (axis) => (low[axis] + high[axis]) / 2;
@@ -585,6 +625,7 @@ class Page(unittest.TestCase):
             return [shade(x), Math.min(shade(left), shade(left + 1))]; }})()""")
         self.assertLess(rim, 0.75 * middle)
 
+    @reads
     def test_a_graphics_processor_is_used_where_there_is_one(self):
         for renderer, painter in (("ANGLE (NVIDIA GeForce RTX)", "GlPainter"), ("ANGLE (Google, Vulkan (SwiftShader Device))", "PixelPainter"), ("llvmpipe (LLVM 15)", "PixelPainter")):
             self.assertEqual(self.browser.evaluate(f"""(() => {{ const {{prototype}} = WebGL2RenderingContext, {{getParameter}} = prototype;
@@ -600,11 +641,13 @@ class Page(unittest.TestCase):
         self.assertEqual(coarse, [False, True])
         self.browser.wait(f"{GRAINS}.painter.took < 1e9")
 
+    @reads
     def test_grains_are_sorted_by_depth(self):
         ways = self.browser.evaluate("""(() => { const list = Uint16Array.of(500, 65535, 0, 500, 7, 40000);
             return [ordered(list, 0, 65535, true), ordered(list, 0, 65535, false), ordered(list, 7.5, Infinity, true), ordered(list, -Infinity, 6, false)].map((places) => [...places]); })()""")
         self.assertEqual(ways, [[2, 4, 0, 3, 5, 1], [1, 5, 3, 0, 4, 2], [0, 3, 5, 1], [2]])
 
+    @opens_pages
     def test_a_wall_that_a_stage_moves_is_drawn_there(self):
         gate = lambda z: {"type": "rectangle", "corner": [0, 0, z], "edge_a": ["8 mm", 0, 0], "edge_b": [0, "6 mm", 0], "material": "sand"}
         stages = [{"name": name, "until": {"type": "time", "value": "10 ms"}, "limit": "1 s", "change": change}
@@ -629,6 +672,7 @@ class Page(unittest.TestCase):
         self.browser.evaluate("document.querySelector('.more').click()")
         self.assertEqual(len(self.browser.evaluate(shown)), 1)
 
+    @opens_pages
     def test_charts_out_of_view_are_drawn(self):
         # For printing.
         self.browser.open(self.folder / "lists/report.html")
@@ -650,6 +694,7 @@ class Page(unittest.TestCase):
         self.assertEqual(last, len(list((self.folder / "one/frames").iterdir())) - 1)
         self.assertLess(ended_at, last)
 
+    @reads
     def test_times_have_readable_units(self):
         for seconds, largest, written in ((0, 0, "0 s"), (0.06, 0.06, "60 ms"), (-0.5, -0.5, "−500 ms"), (2.5e-5, 2.5e-5, "25 µs"), (0.06, 3, "0.06 s"), (1234.5, 1234.5, "1235 s")):
             self.assertEqual(self.browser.evaluate(f"writtenTime({seconds}, {largest})"), written)
@@ -668,11 +713,13 @@ class Page(unittest.TestCase):
                 return view.under.lastChild?.textContent; }})()""")
             self.assertRegex(said, told)
 
+    @reads
     def test_axes_go_from_tick_to_tick(self):
         # With zero if it is near, no extra tick for noise about one, and a minimum range for a constant.
         for span, wanted in (([0, 1.03], [0, 1]), ([0.4, 1], [0, 1]), ([-0.03, 1], [0, 1]), ([-0.2, 1], [-0.2, 1]), ([99, 101], [99, 101]), ([7, 7], [3.5, 10.5]), ([0, 0], [-1, 1])):
             numpy.testing.assert_allclose(self.browser.evaluate(f"settled({span}).ends"), wanted, atol=1e-12)
 
+    @reads
     def test_units_stand_behind_numbers_and_labels(self):
         for unit, behind, beside in (("kg/m³", "7 kg/m³", "it [kg/m³]"), ("°", "7°", "it [°]"), ("1", "7", "it"), ("", "7", "it")):
             self.assertEqual(self.browser.evaluate(f"valueWithUnit(7, {{shown_unit: '{unit}'}})"), behind)
@@ -760,6 +807,7 @@ class Page(unittest.TestCase):
         self.assertNotIn(-1, seen)
         self.assertEqual(len(set(seen)), expected, "all cells of a row")
 
+    @reads
     def test_cells_that_have_moved_apart_meet(self):
         """Two by two cells, ten pixels wide, in rows with gaps and overlaps; and an isolated one."""
         owner = self.browser.evaluate("""(() => { const {x, y} = {x: [10, 22, 11, 20, 60], y: [10, 10, 21, 21, 10]}, half = x.map(() => 5);
@@ -771,6 +819,7 @@ class Page(unittest.TestCase):
         self.assertEqual(set(image[10, 27:55]), {-1}, "the isolated cell stays isolated")
         self.assertEqual(list(image[10, 55:66]), [4] * 10 + [-1])
 
+    @reads
     def test_no_hole_is_left_where_gaps_cross(self):
         """Four by three cells, ten pixels wide, with columns shifted by half a cell, and gaps between columns and rows."""
         centres = [(10 + 16 * i, 10 + 16 * j + 5 * (i % 2)) for i in range(4) for j in range(3)]
@@ -784,6 +833,7 @@ class Page(unittest.TestCase):
             self.assertEqual([k for k in range(58) if column[k] >= 0], list(range(first, first + 42)))
         self.assertEqual(set(image[:, :5].flat) | set(image[:, 63:].flat) | set(image[52:].flat), {-1})
 
+    @reads
     def test_a_missing_cell_leaves_a_hole(self):
         centres = [(10 + 10 * i, 10 + 10 * j) for i in range(3) for j in range(3) if (i, j) != (1, 1)]
         owner = self.browser.evaluate(f"""(() => {{ const centres = {json.dumps(centres)}, half = centres.map(() => 5);
@@ -825,7 +875,7 @@ class Page(unittest.TestCase):
                 last, top = self.browser.evaluate("(() => { const {chart} = document.querySelector('figure.chart'); return [chart.view.scale('y')(chart.yDomain[1]), Math.min(...[...document.querySelectorAll('figure.chart .role-axis')[1].querySelectorAll('.role-axis-grid line')].map((line) => line.transform.baseVal[0].matrix.f))]; })()")
                 self.assertAlmostEqual(last, top, delta=1, msg="a line at the upper end")
             finally:
-                self.browser.resize(1400, 1000)
+                self.browser.resize(*WINDOW)
 
     def test_a_colour_scale_depends_on_the_field_and_not_on_its_values(self):
         for number in (1, 5):
@@ -841,6 +891,7 @@ class Page(unittest.TestCase):
                 if table == "diverging":
                     self.assertEqual(low, -high)
 
+    @reads
     def test_the_most_informative_map_is_the_first(self):
         self.assertEqual(self.browser.evaluate("[...document.querySelector('[name=field]').options].map(({value}) => value)"),
                          ["packing/void_ratio", "packing/solid_fraction", "packing/stress", "packing/coordination_number"])
@@ -853,6 +904,7 @@ class Page(unittest.TestCase):
             await chart.draw();
             return [chart.constructor.name, chart.series.map(({{label, x, y}}) => [label, Array.from(x, String), Array.from(y, String)])]; }})()""")
 
+    @opens_pages
     def test_profiles_and_directions_are_those_of_the_series(self):
         self.browser.open(self.folder / "lists/report.html")
         self.browser.evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
@@ -887,6 +939,7 @@ class Page(unittest.TestCase):
         self.browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=(area["left"] + area["right"]) / 2 + 1, y=0.7 * area["top"] + 0.3 * area["bottom"])
         self.browser.wait(f"{chart}.querySelector('.values').textContent.includes('direction 85°')")
 
+    @opens_pages
     def test_keys_select_the_same_abscissa_in_all_runs(self):
         self.open("both.html")
         self.browser.evaluate("document.querySelector('figure.chart').focus()")
@@ -896,12 +949,14 @@ class Page(unittest.TestCase):
         self.assertAlmostEqual(times[0], 6e-3, delta=2e-5)
         self.assertAlmostEqual(times[1], 6e-3, delta=2e-5)
 
+    @opens_pages
     def test_a_file_of_many_runs_has_a_name_that_file_systems_take(self):
         self.open("both.html")
         name = "(() => { const {runs} = report; report.runs = Array.from({length: %d}, (_, i) => runs[i %% 2]); try { return document.querySelector('figure.chart').chart.fileName; } finally { report.runs = runs; } })()"
         self.assertEqual(self.browser.evaluate(name % 2), "one-two-packing-coordination_number")
         self.assertEqual(self.browser.evaluate(name % 40), "one-and-39-more-packing-coordination_number")
 
+    @reads
     def test_long_series_are_drawn_by_their_extremes(self):
         count, lowest, highest, gap = self.browser.evaluate("""(() => { const y = Float64Array.from({length: 100001}, (_, i) => Math.sin(i));
             y[5000] = -7, y[70000] = 9, y[30000] = NaN;
@@ -920,6 +975,7 @@ class Page(unittest.TestCase):
         self.go(5)
         self.assertRegex(self.browser.evaluate("document.querySelector('.map .stage[role=img]').getAttribute('aria-label')"), r"^\w[\w ]* of \d+ cells of packing at ")
 
+    @opens_pages
     def test_phones_and_dark_mode(self):
         self.browser.resize(400, 800)
         self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
@@ -929,34 +985,42 @@ class Page(unittest.TestCase):
             self.assertEqual(self.browser.evaluate("getComputedStyle(document.body).backgroundColor"), "rgb(23, 24, 26)")
             self.assertIn("#17181a", self.browser.evaluate("document.querySelector('figure.chart').chart.view.background()"))
         finally:
-            self.browser.resize(1400, 1000)
+            self.browser.resize(*WINDOW)
             self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
 
+    @opens_pages
     def test_dark_mode_is_printed_on_white(self):
         emulate = lambda media: self.browser.call("Emulation.setEmulatedMedia", media=media, features=[{"name": "prefers-color-scheme", "value": "dark"}])
-        shown = """new Promise((done) => setTimeout(done, 300)).then(() => {
-            const ink = (canvas) => { const {width, height} = canvas, copy = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true});
-                copy.drawImage(canvas, 0, 0);
-                const {data} = copy.getImageData(0, Math.floor(0.9 * height), Math.floor(0.3 * width), Math.floor(0.1 * height));
-                let light = 0, dark = 0;
-                for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200) (data[i] > 200 ? (light += 1) : data[i] < 60 ? (dark += 1) : 0);
-                return light > dark ? 'paper is light' : 'paper is dark'; };
-            return [document.querySelector('figure.chart').chart.view.background(), ink(document.querySelector('.grains .overlay'))]; })"""
+        def expect(*wanted):
+            """These are the papers of a chart and of grains, soon."""
+            shown = self.browser.evaluate(f"""(async () => {{
+                const ink = (canvas) => {{ const {{width, height}} = canvas, copy = new OffscreenCanvas(width, height).getContext('2d', {{willReadFrequently: true}});
+                    copy.drawImage(canvas, 0, 0);
+                    const {{data}} = copy.getImageData(0, Math.floor(0.9 * height), Math.floor(0.3 * width), Math.floor(0.1 * height));
+                    let light = 0, dark = 0;
+                    for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200) (data[i] > 200 ? (light += 1) : data[i] < 60 ? (dark += 1) : 0);
+                    return light > dark ? 'paper is light' : 'paper is dark'; }};
+                for (const until = performance.now() + 5000;;) {{
+                    const now = [document.querySelector('figure.chart').chart.view.background(), ink(document.querySelector('.grains .overlay'))];
+                    if (now.join() === {json.dumps(wanted)}.join() || performance.now() > until) return now;
+                    await new Promise((go) => setTimeout(go, 20)); }} }})()""")
+            self.assertEqual(shown, list(wanted))
         emulate("")
         try:
             self.open("one/report.html")
             self.browser.wait(f"{GRAINS}.painted")
-            self.assertEqual(self.browser.evaluate(shown), ["#17181a", "paper is dark"])
+            expect("#17181a", "paper is dark")
             emulate("print")
             self.assertEqual(self.browser.evaluate("getComputedStyle(document.body).backgroundColor"), "rgb(255, 255, 255)")
             self.browser.evaluate("dispatchEvent(new Event('beforeprint'))")
-            self.assertEqual(self.browser.evaluate(shown), ["#fff", "paper is light"])
+            expect("#fff", "paper is light")
             emulate("")
             self.browser.evaluate("dispatchEvent(new Event('afterprint'))")
-            self.assertEqual(self.browser.evaluate(shown), ["#17181a", "paper is dark"])
+            expect("#17181a", "paper is dark")
         finally:
             self.browser.call("Emulation.setEmulatedMedia", media="", features=[{"name": "prefers-color-scheme", "value": "light"}])
 
+    @reads
     def test_shrinking_does_not_distort_grains(self):
         """As in printing: without a redraw."""
         wide, shrunk = self.browser.evaluate(f"""(() => {{ const {{canvas, stage}} = {GRAINS}, size = () => {{
@@ -971,6 +1035,7 @@ class Page(unittest.TestCase):
         self.assertAlmostEqual(shrunk[0], shrunk[1], 6)
         self.assertLess(shrunk[0], 0.6 * wide[0])
 
+    @opens_pages
     def test_grains_are_drawn_without_webgl(self):
         script = self.browser.call("Page.addScriptToEvaluateOnNewDocument", source="""
             const context = HTMLCanvasElement.prototype.getContext;

@@ -34,7 +34,7 @@ SHORT = [{"name": "fall", "until": {"type": "time", "value": "0.3 s"}, "limit": 
 
 
 class WatchedRun:
-    """A run with --watch; interrupted at the end of the block, if it has not ended before."""
+    """A run with --watch; killed at the end of the block, as one that is interrupted waits for pages that were asked for."""
 
     def __init__(self, folder, name, *words, **changes):
         write_scene(folder, name, {**SCENE, **changes})
@@ -48,8 +48,8 @@ class WatchedRun:
         return self
 
     def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.interrupt()
+        self.process.kill()
+        self.process.wait()
         self.process.stderr.close()
 
     def interrupt(self):
@@ -195,14 +195,19 @@ class Served(unittest.TestCase):
 
 @unittest.skipIf(CHROMIUM is None, "there is no Chromium to open the page with (Debian: chromium)")
 class InABrowser(unittest.TestCase):
-    def setUp(self):
-        self.place = tempfile.TemporaryDirectory(prefix="grit-watch-")
-        self.folder = pathlib.Path(self.place.name)
-        self.browser = Browser(CHROMIUM, timeout=150).__enter__()
+    @classmethod
+    def setUpClass(cls):
+        cls.place = tempfile.TemporaryDirectory(prefix="grit-watch-")
+        cls.folder = pathlib.Path(cls.place.name)
+        cls.browser = Browser(CHROMIUM, 1000, 800, timeout=150).__enter__()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.__exit__()
+        cls.place.cleanup()
 
     def tearDown(self):
-        self.browser.__exit__()
-        self.place.cleanup()
+        self.browser.open("about:blank")  # the page of a run that has ended keeps asking for another one
 
     def shown(self):
         """Number of samples in the first curve, and number of frames."""
@@ -299,11 +304,13 @@ class InABrowser(unittest.TestCase):
 
     def test_a_failed_run_is_shown(self):
         # Grains do not come to rest within such a short time.
-        # It runs longer than a newly started browser takes to request the page.
-        stages = [dict(SHORT[0], until={"type": "time", "value": "20 s"}, limit="100 s"),
+        stages = [dict(SHORT[0], until={"type": "time", "value": "3 s"}, limit="10 s"),
                   {"name": "rest", "until": {"type": "unbalanced-force", "below": 1e-15}, "limit": "10 ms"}]
         with WatchedRun(self.folder, "failing", stages=stages) as run:
+            self.assertEqual(run.ask("/none")[0], 404)  # it is served now
+            run.process.send_signal(signal.SIGSTOP)  # it does not end before the browser requests the page
             self.browser.open(run.address)
+            run.process.send_signal(signal.SIGCONT)
             self.browser.evaluate("window.sameDocument = true")
             self.browser.wait("document.querySelector('.status.failed')")
             self.assertEqual(run.process.wait(), 4)
@@ -358,6 +365,7 @@ class InABrowser(unittest.TestCase):
             port = run.port
             self.browser.open(run.address)
             self.browser.wait("document.querySelector('.status.running')")
+            self.assertEqual(run.interrupt(), 130)
         with WatchedRun(self.folder, "second", "--port", str(port), title="the next one"):
             while not self.seen("document.querySelector('h1')?.textContent === 'the next one' && document.querySelector('.status.running')"):
                 pass
