@@ -34,7 +34,7 @@ run_page() {
     checked=yes
     shift
   fi
-  local root=$1 grit=$2 page=$3 line language='' name='' text='' command='' number=0 failed=0
+  local root=$1 grit=$2 page=$3 line language='' name='' text='' command='' number=0 failed=0 base linked=()
   place=$(mktemp -d)
   trap 'rm -rf "$place"' EXIT
   mkdir -p "$place/build/bin"
@@ -44,9 +44,10 @@ run_page() {
     ln -s "$grit" "$place/build/bin/grit"
   fi
   for entry in "$root"/*; do
-    [[ -e $place/$(basename "$entry") || $(basename "$entry") == build* || $(basename "$entry") == results* ]] ||
-      ln -s "$entry" "$place/"
+    base=${entry##*/}
+    [[ -e $place/$base || $base == build* || $base == results* ]] || linked+=("$entry")
   done
+  ln -s "${linked[@]}" "$place/"
 
   complain() { echo "$page:$number: $1"; failed=1; }
   run_line() {
@@ -96,8 +97,8 @@ run_page() {
       text+=$line$'\n'
     else
       while [[ $line =~ \]\(([^\)#]+)(#[^\)]*)?\)(.*) ]]; do
-        local target=${BASH_REMATCH[1]} line=${BASH_REMATCH[3]}
-        [[ $target == http* || -e $(dirname "$root/$page")/$target ]] || complain "there is no $target"
+        local target=${BASH_REMATCH[1]} line=${BASH_REMATCH[3]} beside=$root/$page
+        [[ $target == http* || -e ${beside%/*}/$target ]] || complain "there is no $target"
       done
     fi
   done < "$root/$page"
