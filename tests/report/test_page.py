@@ -957,6 +957,17 @@ class Page(unittest.TestCase):
         self.assertEqual(self.browser.evaluate(name % 40), "one-and-39-more-packing-coordination_number")
 
     @reads
+    def test_new_data_are_drawn_if_they_arrive_during_the_first_drawing(self):
+        drawn = self.browser.evaluate("""(async () => { const {chart} = document.querySelector('figure.chart'), one = chart.group.chart(chart.name), load = one.load.bind(one);
+            let count = 0;
+            one.load = async () => { const number = ++count; return Object.assign(await load(), {number}); };
+            const first = one.draw();
+            await one.refresh();
+            await first;
+            return one.series.number; })()""")
+        self.assertEqual(drawn, 2)
+
+    @reads
     def test_long_series_are_drawn_by_their_extremes(self):
         count, lowest, highest, gap = self.browser.evaluate("""(() => { const y = Float64Array.from({length: 100001}, (_, i) => Math.sin(i));
             y[5000] = -7, y[70000] = 9, y[30000] = NaN;

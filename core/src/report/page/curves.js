@@ -199,13 +199,13 @@ class Chart {
     return this.byPowers ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
   }
 
-  /** Redraws with the new data of its group. */
+  /** Redraws with the new data of its group, also if it is being drawn for the first time. */
   async refresh() {
     this.channel = this.group.channelsNamed(this.name)[0].channel;
-    if (!this.view) return;
+    if (!this.drawing) return;
     const { places } = this;
     await this.draw();
-    this.show(places?.length === this.series.length ? places : null);
+    if (this.view) this.show(places?.length === this.series.length ? places : null);
   }
 
   /** The Vega specification, `width` pixels between the axes. */
