@@ -727,7 +727,7 @@ TEST_F(CheckedServos, MustNotPullBodiesWithoutAttraction) {
             "compression is positive: set a target above 0, or use a contact law with cohesion\n");
   EXPECT_THAT(warnings("cell.json", {R"(/stages/0/change={"domain": {"servo": {"stress": {"yy": -10}}}})"}),
               StartsWith("/domain/servo/stress/yy: the servo pulls with -10 Pa, "));
-  EXPECT_EQ(warnings("cell.json", {pull, "/contacts/type=linear-cohesive", "/materials/sand/tensile_strength=1e6"}),
+  EXPECT_EQ(warnings("cell.json", {pull, "/contacts/type=linear-cohesive", "/materials/sand/tensile_strength=1e7"}),
             "");
   EXPECT_EQ(warnings("cell.json", {"/domain/servo/stress/xy=-1000"}), "") << "a shear stress has either sign";
 

@@ -118,7 +118,8 @@ TEST(Lattice, IsCountedBeyondAllIntegers) {
   const LatticeSource tiny = lattice("simple-cubic", Vec3::Zero(), Vec3::Ones(), 1e-12);
   EXPECT_NEAR(count_of_lattice(tiny, {}), 1e36, 1e25);
   Description d = description("linear-rolling", {{"contact_modulus", 1e6}}, {});
-  d["bodies"]["grains"]["source"] = {{"type", "lattice"}, {"low", {0, 0, 0}}, {"high", {1, 1, 1}}, {"diameter", 1e-12}};
+  d["bodies"]["grains"]["source"] = {
+      {"type", "lattice"}, {"kind", "simple-cubic"}, {"low", {0, 0, 0}}, {"high", {1, 1, 1}}, {"diameter", 1e-12}};
   const Scene scene = scene_of(d);
   const std::shared_ptr<const BodyKind> sphere = scene.description->bodies.at("grains").kind.make();
   EXPECT_GE(body_count(*scene.description, "grains", sphere), 1'000'000'000'000u);

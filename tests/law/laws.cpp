@@ -256,6 +256,7 @@ static_assert(grit::check_law<FeaturesAreNotAnnounced>());
 static_assert(grit::check_law<FeaturesAreMisspelt>());
 static_assert(grit::check_law<AFieldIsMissing>());
 static_assert(grit::check_law<AFieldNeedsNoFeature>());
+static_assert(grit::check_law<APrerequisiteIsNotAFeature>());
 static_assert(grit::check_law<PairHasADouble>());
 static_assert(grit::check_law<MaterialDeclaresNothing>());
 
@@ -268,7 +269,7 @@ static_assert(!grit::LawDefinition<EvaluateIsMissing> && !grit::LawDefinition<Ev
               !grit::LawDefinition<ReachReturnsADouble> && !grit::LawDefinition<LossesAreNotAnnounced> &&
               !grit::LawDefinition<LossesAreMisspelt> && !grit::LawDefinition<FeaturesAreNotAnnounced> &&
               !grit::LawDefinition<FeaturesAreMisspelt> && !grit::LawDefinition<AFieldIsMissing> &&
-              !grit::LawDefinition<AFieldNeedsNoFeature> && !grit::LawDefinition<PairHasADouble> &&
-              !grit::LawDefinition<MaterialDeclaresNothing>);
+              !grit::LawDefinition<AFieldNeedsNoFeature> && !grit::LawDefinition<APrerequisiteIsNotAFeature> &&
+              !grit::LawDefinition<PairHasADouble> && !grit::LawDefinition<MaterialDeclaresNothing>);
 
 }  // namespace somewhere

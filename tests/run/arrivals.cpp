@@ -331,7 +331,7 @@ TEST(Arrivals, CountInTheProgressFromTheStart) {
 TEST(Arrivals, OfAMissingFileAreRefusedAtTheStart) {
   Description d = first_and_late({{Vec3::Zero(), radius}}, {});
   d["bodies"]["late"]["source"] = {{"type", "file"}, {"path", "/nowhere/grains.txt"}};
-  EXPECT_THROW(run(d), DescriptionError);
+  EXPECT_THROW(run(d), PlacedError);
 }
 
 TEST(Arrivals, OfAnotherMaterialHaveMixedStiffness) {

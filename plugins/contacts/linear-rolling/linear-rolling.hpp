@@ -79,7 +79,7 @@ struct LinearRolling : LawBase {
   static constexpr LawTraits traits{.single_precision = true,
                                     .losses = true,
                                     .features = {"shear", "rolling", "twisting", "damping"},
-                                    .prerequisites = {0, with_shear, with_rolling, 0}};
+                                    .prerequisites = {0, 0, with_shear | with_rolling, 0}};
 
   template <class L>
   struct State {
