@@ -161,6 +161,12 @@ def command_of(build, words):
     sys.exit(f'planted.py: {build} has no command with {words}')
 
 
+def compiled_file(build, unit):
+    """The file that the compiler gets: the unit, or a file of a unity build that includes it."""
+    including = [path for path in build.glob('core/CMakeFiles/*/Unity/*.cxx') if f'"{unit}"' in path.read_text(encoding='utf-8')]
+    return including[0] if including else unit
+
+
 def is_law(part):
     return PARTS[part][0].parent == LAWS
 
@@ -183,10 +189,14 @@ def built(build, part, folder):
     unit = source_folder / (f'{part}.cpp' if is_law(part) else source)
     (folder / unit.name).write_bytes(unit.read_bytes())
     (folder / source).write_text(changed, encoding='utf-8')
-    compile_one = command_of(build, [f' -c {unit}'])
+    compiled = compiled_file(build, unit)
+    if compiled != unit:
+        (folder / compiled.name).write_text(compiled.read_text(encoding='utf-8').replace(f'"{unit}"', f'"{folder / unit.name}"'),
+                                            encoding='utf-8')
+    compile_one = command_of(build, [f' -c {compiled}'])
     made = re.search(r' -o (\S+\.o) ', compile_one).group(1)
     link = command_of(build, ['-shared', f' -o {library.relative_to(build)} '])
-    subprocess.run(compile_one.replace(f' -c {unit}', f' -c {folder / unit.name}').replace(f' -o {made} ', f' -o {folder}/planted.o ')
+    subprocess.run(compile_one.replace(f' -c {compiled}', f' -c {folder / compiled.name}').replace(f' -o {made} ', f' -o {folder}/planted.o ')
                    .replace(f'-MF {made}.d', f'-MF {folder}/planted.d'), shell=True, check=True, cwd=build)
     subprocess.run(link.replace(f' {made} ', f' {folder}/planted.o ').replace(f' -o {library.relative_to(build)} ', f' -o {folder}/planted.so '),
                    shell=True, check=True, cwd=build)
