@@ -39,7 +39,7 @@ class Options {
   /// The single positional word of the command. Throws UsageError.
   std::string only_word(const char* what) const;
   /// Built-in components and the plugins of --plugin-path, GRIT_PLUGIN_PATH and this installation. Throws UsageError
-  /// for a --plugin-path that is no folder.
+  /// for a --plugin-path that is not a folder.
   std::unique_ptr<Registry> registry() const;
 
  private:
