@@ -11,7 +11,7 @@
 namespace grit {
 namespace {
 
-/// Slot of a pair that is no candidate any more.
+/// Slot of a pair that is no longer a candidate.
 constexpr std::uint32_t nowhere = ~0u;
 
 /// A pair that was in contact before the rebuild, sorted by its present lower body index.

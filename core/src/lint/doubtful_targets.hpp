@@ -17,8 +17,8 @@ namespace grit {
 std::vector<UnusedSetting> tensile_targets(const Scene& described,
                                            const std::map<std::string, std::shared_ptr<const Geometry>>& geometries);
 
-/// A message for each condition on a pressure or stress that lies beyond all targets of its servo in its stage and the
-/// one before, so that it is not passed on the way.
+/// A message for each condition on a pressure or stress that is outside the range of the servo's targets in this stage
+/// and the one before, so that the run cannot meet it.
 std::vector<UnusedSetting> missed_targets(const Scene& described);
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// Attraction that acts over less than the way of a body in a step.
+// Attraction over distances shorter than the displacement of a body per step.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace grit {
 
-/// A message if a contact law acts at a distance that a body may pass in one step.
+/// A message if the reach of the contact law is below the maximum displacement per step.
 std::optional<UnusedSetting> short_reach(const Kernel& kernel);
 
 }  // namespace grit

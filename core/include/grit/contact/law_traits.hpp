@@ -25,7 +25,7 @@ struct LawTraits {
   /// Names of features that are evaluated only where needed, in the order of their bits; the law then has features().
   /// The loop is compiled once for each combination that `prerequisites` leaves.
   const char* features[4] = {};
-  /// For each feature, bits of others that are evaluated with it. Each one keeps combinations from being compiled.
+  /// For each feature, the bits of others that are always evaluated with it; fewer combinations are then compiled.
   unsigned prerequisites[4] = {};
 };
 
