@@ -10,7 +10,7 @@ cmake --preset demo
 cmake --build --preset demo
 
 rm -rf "$results"
-build-demo/bin/grit run sims/direct-shear/quick.json --out "$results"
+build-demo/bin/grit run sims/direct-shear/demo.json --out "$results"
 
 echo
 echo "Results: $PWD/$results"
