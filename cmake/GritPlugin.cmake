@@ -30,7 +30,7 @@ function(grit_plugin folder name)
   # A plugin is compiled against the SDK alone; only the link needs the library.
   add_library(${target}_objects OBJECT ${name}.cpp)
   set_target_properties(${target}_objects PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
-                        VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD OFF)
+                        VISIBILITY_INLINES_HIDDEN ON)
   # Without a build type there is no optimisation, which makes a contact law slower by an order of magnitude.
   target_compile_options(${target}_objects PRIVATE -Wall -Wextra $<$<CONFIG:>:-O3>)
   target_link_libraries(${target}_objects PUBLIC grit::sdk ${arg_LIBRARIES})

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <deque>
 #include <functional>
-#include <regex>
+#include <string_view>
 #include <tuple>
 
 #include "grit/plugin.hpp"
@@ -116,8 +116,14 @@ std::string known_names(const World& world, const std::map<std::string, FormulaP
 
 /// muParser's message without its count of characters, which begins at 0.
 std::string plain_message(const mu::ParserError& error) {
-  static const std::regex position("( found)? at (expression )?position -?[0-9]+");
-  std::string message = std::regex_replace(error.GetMsg(), position, "");
+  std::string message = error.GetMsg();
+  for (const std::string_view phrase :
+       {" found at expression position ", " found at position ", " at expression position ", " at position "}) {
+    const std::size_t begin = message.find(phrase);
+    if (begin == std::string::npos) continue;
+    const std::size_t end = message.find_first_not_of("-0123456789", begin + phrase.size());
+    message.erase(begin, end == std::string::npos ? end : end - begin);
+  }
   while (!message.empty() && (message.back() == '.' || message.back() == ' ')) message.pop_back();
   if (!message.empty()) message.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(message.front())));
   return message;
