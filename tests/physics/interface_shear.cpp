@@ -53,7 +53,7 @@ TEST(InterfaceShear, RougherTeethBearMoreDilateMoreAndSlipLess) {
   ASSERT_EQ(spread.size(), 2u);
   EXPECT_NEAR(spread.back(), 0.044, 0.02);
   EXPECT_NEAR(rough.channel.at("prepared-cells/mean").back(), 0.587, 0.02) << "0.57 in the interior";
-  EXPECT_NEAR(rough.channel.at("prepared-chains/anisotropy").back(), 0.055, 0.05) << "homogeneous, except for scatter";
+  EXPECT_LT(rough.channel.at("prepared-chains/anisotropy").back(), 0.1) << "isotropic; six seeds gave 0.005 … 0.050";
   EXPECT_NEAR(rough.channel.at("prepared-chains/chains").back(), 46, 20);
 }
 
