@@ -93,6 +93,20 @@ TEST_F(Runs, ReportCurvesWithoutAValueAtTheEnd) {
                                       "test/late: peak 3, final 3\n"));
 }
 
+TEST_F(Runs, ReportCurvesInReadableUnits) {
+  auto scene = json::parse(two_grains);
+  scene["probes"]["test"] = {{"type", "formula"},
+                             {"every_steps", 50},
+                             {"curves",
+                              {{"angle", {{"formula", "step > 0 ? 0.5 * _pi : _pi"}, {"unit", "rad"}}},
+                               {"stress", {{"formula", "step > 0 ? 2e5 : 0"}, {"unit", "Pa"}}}}}};
+  scene["output"]["summary"] = {"test/angle", "test/stress"};
+  folder.write("units.json", scene.dump());
+  const auto outcome = grit({"run", "units.json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, StartsWith("test/angle: peak 180°, final 90°\ntest/stress: peak 200 kPa, final 200 kPa\n"));
+}
+
 TEST_F(Runs, DoNotReplaceOthersWithoutOverwrite) {
   ASSERT_EQ(grit({"run", "two.json"}).status, 0);
   const auto before = text_of(folder / "results/two/run.json");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "format/symbols.hpp"
 #include "output/named_fields.hpp"
 
 namespace grit {
@@ -49,10 +50,11 @@ std::string CurveSummary::text() const {
   for (const Curve& curve : curves_) {
     const bool ends = !std::isnan(curve.last);
     if (!curve.any && ends) continue;  // never sampled
-    const std::string unit = curve.channel.unit == "1" ? "" : ' ' + curve.channel.unit;
+    const ReadableUnit shown = readable(curve.channel.unit, std::abs(curve.any ? curve.largest : curve.last));
+    const std::string unit = shown.unit == "1" ? "" : shown.unit == "°" ? shown.unit : ' ' + shown.unit;
     text << curve.channel.full_name() << ": ";
-    if (curve.any) text << "peak " << curve.largest << unit << ", ";
-    if (ends) text << "final " << curve.last << unit << '\n';
+    if (curve.any) text << "peak " << shown.factor * curve.largest << unit << ", ";
+    if (ends) text << "final " << shown.factor * curve.last << unit << '\n';
     else text << "not defined at the end\n";
   }
   return text.str();
