@@ -242,6 +242,10 @@ TEST(Descriptions, CheckReportsSettingsWithoutEffect) {
             HasSubstr("  /bodies/grains/overlap: it applies to bodies inserted by a stage"),
             HasSubstr("  /time_step/safety: the step is given"), HasSubstr("  /materials/steel: no body"),
             HasSubstr("  /probes/idle: it never samples")));
+  const std::string stream = R"(/bodies/poured={"type": "sphere", "material": "sand", "source": {"type": "stream",
+      "number_rate": 100, "region": {"type": "disc", "centre": [0, 0, "5 cm"], "radius": "1 cm"},
+      "sizes": {"type": "uniform", "smallest": "1 mm", "largest": "2 mm"}}})";
+  EXPECT_THAT(check({"/seed=7", stream}), testing::Not(HasSubstr("nothing is random")));
   EXPECT_THAT(idle, testing::Not(HasSubstr("/engines/hold")));
   EXPECT_THAT(idle, testing::Not(HasSubstr("/materials/steel/"))) << "reported with the material";
   const std::string turning = R"(/probes/turns={"type": "rotations", "every_time": "3 s"})";

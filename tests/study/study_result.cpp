@@ -360,6 +360,9 @@ TEST(WhatIsRandom, IsWhatASeedDecides) {
   EXPECT_FALSE(random("sphere", "file"));
   EXPECT_FALSE(random("clump", "list"));
   EXPECT_TRUE(random("clump", "file")) << "a file has no orientations";
+  EXPECT_FALSE(random("sphere", "lattice"));
+  EXPECT_TRUE(random("clump", "lattice")) << "nor has a lattice";
+  EXPECT_TRUE(random("sphere", "stream"));
 }
 
 TEST_F(Charts, FailuresAreReportedAndNotEvaluated) {

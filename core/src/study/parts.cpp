@@ -30,7 +30,8 @@ std::vector<std::string> parts_of(const Description& resolved) {
 bool is_random(const Description& resolved) {
   return std::ranges::any_of(resolved.value("bodies", Description::object()), [](const Description& group) {
     const std::string grains = type_of(group.value("source", Description()));
-    return grains == "cloud" || (grains == "file" && type_of(group) == "clump");
+    return grains == "cloud" || grains == "stream" ||
+           ((grains == "file" || grains == "lattice") && type_of(group) == "clump");
   });
 }
 

@@ -12,8 +12,8 @@ namespace grit {
 /// `resolved` includes all defaults, as in run.json.
 std::vector<std::string> parts_of(const Description& resolved);
 
-/// Whether the seed has an effect: on positions and sizes of a cloud, or on orientations of clumps whose positions come
-/// from a file.
+/// Whether the seed has an effect: on positions and sizes of a cloud or a stream, or on orientations of clumps whose
+/// positions come from a file or a lattice.
 bool is_random(const Description& resolved);
 
 }  // namespace grit
