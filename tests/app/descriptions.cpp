@@ -673,6 +673,49 @@ TEST(Descriptions, CheckWarnsWhereNothingMovesTheBodies) {
   EXPECT_THAT(check({R"(/stages/0/growth={"rate": 1})"}), none);
 }
 
+TEST(Descriptions, CheckWarnsWhereGravityIsForgotten) {
+  const OwnFolder folder;
+  auto scene = json::parse(two_grains);
+  scene["bodies"]["grains"]["source"]["bodies"][1]["position"] = {0.003, 0, 0};
+  scene["bodies"]["grains"]["velocity"] = {0, 0, -0.5};
+  scene["walls"]["floor"] = {{"type", "plane"}, {"material", "sand"}, {"point", {0, 0, -0.01}}};
+  folder.write("moving.json", scene.dump());
+  scene["stages"][0]["until"] = {{"type", "at-rest"}};
+  folder.write("settling.json", scene.dump());
+  scene = json::parse(two_grains);
+  scene["bodies"]["poured"] = {{"type", "sphere"}, {"material", "sand"}, {"velocity", {0, 0, -0.5}}};
+  scene["bodies"]["poured"]["source"] = {{"type", "stream"},
+                                         {"number_rate", 100},
+                                         {"region", {{"type", "disc"}, {"centre", {0, 0, 0.05}}, {"radius", 0.01}}},
+                                         {"sizes", {{"type", "list"}, {"diameters", {0.001}}}}};
+  folder.write("poured.json", scene.dump());
+  const auto check = [&](const std::string& file, const std::string& set = "/seed=1") {
+    const auto outcome = grit_in(folder.path(), {"check", file, "--set", set});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string gravity = R"(/engines/gravity={"type": "gravity"})";
+  const std::string warning =
+      "\nwarning\n  /engines: no force acts on the bodies: there is neither gravity nor another force, and no wall "
+      "moves; ";
+  EXPECT_THAT(check("settling.json"), HasSubstr(warning + "a stage waits for contacts that carry them; if they should "
+                                                          "fall, add \"gravity\": {\"type\": \"gravity\"}\n"));
+  EXPECT_THAT(check("poured.json"), HasSubstr(warning + "those of a stream keep their velocity until they hit "));
+  const auto none = testing::Not(HasSubstr("no force acts"));
+  EXPECT_THAT(check("moving.json"), none) << "a collision needs none";
+  EXPECT_THAT(check("settling.json", R"(/stages/0/until={"type": "any", "of": [{"type": "at-rest"}, {"type": "time",
+                                        "value": 1}]})"),
+              none)
+      << "time ends it";
+  for (const char* file : {"settling.json", "poured.json"}) {
+    EXPECT_THAT(check(file, gravity), none);
+    EXPECT_THAT(check(file, R"(/engines/drag={"type": "drag", "viscosity": 1e-3})"), none);
+    EXPECT_THAT(check(file, R"(/stages/0/change={"engines": {"gravity": {"type": "gravity"}}})"), none);
+    EXPECT_THAT(check(file, R"(/stages/0/growth={"rate": 1})"), none);
+  }
+  EXPECT_THAT(check("settling.json", R"(/walls/floor/motion={"velocity": [0, 0, "1 mm/s"]})"), none);
+}
+
 TEST(Descriptions, CheckReportsBodiesThatFallForEver) {
   const OwnFolder folder;
   auto cell = json::parse(two_grains);

@@ -31,27 +31,59 @@ bool has_walls_at_rest(const SceneDescription& now, const SceneDescription& star
   });
 }
 
+/// Whether no force acts on bodies in any stage, no wall moves, and neither bodies nor the domain change their size.
+bool nothing_pushes(const Scene& described) {
+  const SceneDescription& start = *described.description;
+  const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
+  return std::ranges::none_of(start.stages, grows) &&
+         always_by_engines(described, [&](const SceneDescription& now, const EngineMap& engines) {
+           const auto is_force = [](const auto& one) { return one.second->phase() == Phase::forces; };
+           const auto is_unmoved = [](const MotionSettings& group) {
+             return group.gravity.isZero(0.0) && (!group.prescribed || *group.prescribed == RigidMotion{});
+           };
+           return all_settings(now, engines, is_unmoved) && std::ranges::none_of(engines, is_force) &&
+                  !now.domain.deforms() && has_walls_at_rest(now, start);
+         });
+}
+
+bool is_stream(const BodiesDescription& group) { return std::holds_alternative<StreamSource>(group.source.value()); }
+
+/// Whether a condition holds only once contacts carry forces.
+bool waits_for_contacts(const Condition& condition) {
+  const auto& is = condition.is.value();
+  if (const auto* all = std::get_if<AllCondition>(&is)) return std::ranges::any_of(all->of, waits_for_contacts);
+  if (const auto* any = std::get_if<AnyCondition>(&is)) return std::ranges::all_of(any->of, waits_for_contacts);
+  return std::holds_alternative<AtRestCondition>(is) || std::holds_alternative<UnbalancedForceCondition>(is);
+}
+
+/// Whether all bodies are there from the start, and touch nothing.
+bool is_loose(const SceneDescription& start, const World& world) {
+  return !start.begin && world.contacts().empty() &&
+         std::ranges::all_of(start.bodies, [](const auto& group) { return group.second.stage.empty(); });
+}
+
 }  // namespace
 
 std::optional<UnusedSetting> unmoved_bodies(const Scene& described, const World& world) {
   const SceneDescription& start = *described.description;
-  const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
-  if (!is_still(world) || std::ranges::any_of(start.stages, grows) ||
-      std::ranges::any_of(start.bodies, [](const auto& group) { return may_move(group.second); }))
-    return std::nullopt;
-  const bool still = always_by_engines(described, [&](const SceneDescription& now, const EngineMap& engines) {
-    const auto is_force = [](const auto& one) { return one.second->phase() == Phase::forces; };
-    const auto is_unmoved = [](const MotionSettings& group) {
-      return group.gravity.isZero(0.0) && (!group.prescribed || *group.prescribed == RigidMotion{});
-    };
-    return all_settings(now, engines, is_unmoved) && std::ranges::none_of(engines, is_force) && !now.domain.deforms() &&
-           has_walls_at_rest(now, start);
-  });
-  if (!still) return std::nullopt;
-  return UnusedSetting{
-      "/engines",
-      "nothing moves the bodies: they are at rest without contacts, no wall moves, and there is neither "
-      "gravity nor another force; add \"gravity\": {\"type\": \"gravity\"}, a velocity or a moving wall"};
+  const auto moves = [](const auto& group) { return may_move(group.second); };
+  const auto enters = [](const auto& group) { return is_stream(group.second); };
+  const auto waits = [](const StageDescription& stage) { return waits_for_contacts(stage.until); };
+  const bool still = is_still(world) && std::ranges::none_of(start.bodies, moves);
+  const bool flows = std::ranges::any_of(start.bodies, enters);
+  // A velocity alone has a use: in collisions. It does not make bodies rest on each other.
+  const bool in_vain = flows || (is_loose(start, world) && std::ranges::any_of(start.stages, waits));
+  if (!(still || in_vain) || !nothing_pushes(described)) return std::nullopt;
+  if (still)
+    return UnusedSetting{
+        "/engines",
+        "nothing moves the bodies: they are at rest without contacts, no wall moves, and there is neither "
+        "gravity nor another force; add \"gravity\": {\"type\": \"gravity\"}, a velocity or a moving wall"};
+  return UnusedSetting{"/engines", std::string("no force acts on the bodies: there is neither gravity nor another "
+                                               "force, and no wall moves; ") +
+                                       (flows ? "those of a stream keep their velocity until they hit something"
+                                              : "a stage waits for contacts that carry them") +
+                                       "; if they should fall, add \"gravity\": {\"type\": \"gravity\"}"};
 }
 
 }  // namespace grit
