@@ -41,7 +41,9 @@ void declare_sizes(Parameters& p, double& smallest, double& largest) {
   p.add("largest", largest).unit("m").symbol("d_max").above(0).doc("largest diameter");
   p.check(
       [&](const Complain& complain) {
-        if (largest < smallest) complain("largest", "a diameter below smallest", "at least smallest");
+        if (largest < smallest)
+          complain("largest", number(largest) + " m, below smallest, which is " + number(smallest) + " m",
+                   "at least smallest; are the units of both right?");
       },
       {"smallest", "largest"});
 }
