@@ -319,6 +319,21 @@ TEST(Stage, ThatNeverEndsFails) {
   EXPECT_THAT(done.notes.ended, testing::IsEmpty());
 }
 
+TEST(Stage, ThatWaitsForGrainsWithoutAFloorSaysSo) {
+  const Description rest = {{"type", "at-rest"}};
+  const auto told = [](const Description& until, const Vec3& gravity) {
+    Description d = lone(until, 0.0999);
+    d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", vector(gravity)}};
+    return run(d).summary().message;
+  };
+  EXPECT_THAT(told(rest, {0, 0, 10}), testing::AllOf(HasSubstr("1 of 1 bodies have no contact and fall, at up to "),
+                                                     HasSubstr(" m/s: is there a floor below them, and does gravity "
+                                                               "point towards it?"),
+                                                     testing::Not(HasSubstr("give it more time"))));
+  EXPECT_THAT(told(rest, Vec3::Zero()), HasSubstr("give it more time")) << "it does not fall";
+  EXPECT_THAT(told(steps(1000000), {0, 0, 10}), HasSubstr("give it more time")) << "steps need no floor";
+}
+
 TEST(Stage, ReportsUnmetConditions) {
   const auto told = [](Description d, const Description& until) {
     d["stages"][0]["until"] = until, d["stages"][0]["limit"] = 0.9995e-3;

@@ -4,6 +4,7 @@
 
 #include "description/wall_ways.hpp"
 #include "lint/all_stages.hpp"
+#include "run/conditions.hpp"
 
 namespace grit {
 namespace {
@@ -47,14 +48,6 @@ bool nothing_pushes(const Scene& described) {
 }
 
 bool is_stream(const BodiesDescription& group) { return std::holds_alternative<StreamSource>(group.source.value()); }
-
-/// Whether a condition holds only once contacts carry forces.
-bool waits_for_contacts(const Condition& condition) {
-  const auto& is = condition.is.value();
-  if (const auto* all = std::get_if<AllCondition>(&is)) return std::ranges::any_of(all->of, waits_for_contacts);
-  if (const auto* any = std::get_if<AnyCondition>(&is)) return std::ranges::all_of(any->of, waits_for_contacts);
-  return std::holds_alternative<AtRestCondition>(is) || std::holds_alternative<UnbalancedForceCondition>(is);
-}
 
 /// Whether all bodies are there from the start, and touch nothing.
 bool is_loose(const SceneDescription& start, const World& world) {

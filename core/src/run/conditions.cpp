@@ -253,6 +253,14 @@ bool may_be_met(const Condition& condition, const Kernel& kernel, const StageSta
   return std::visit(Met{kernel, start, true}, condition.is.value());
 }
 
+bool waits_for_contacts(const Condition& condition) {
+  const auto& is = condition.is.value();
+  if (const auto* all = std::get_if<AllCondition>(&is)) return std::ranges::any_of(all->of, waits_for_contacts);
+  if (const auto* any = std::get_if<AnyCondition>(&is)) return std::ranges::all_of(any->of, waits_for_contacts);
+  return std::holds_alternative<AtRestCondition>(is) || std::holds_alternative<UnbalancedForceCondition>(is) ||
+         std::holds_alternative<KineticEnergyCondition>(is);
+}
+
 std::string ended_by(const Condition& condition, const Kernel& kernel, const StageStart& start) {
   return has_choice(condition) ? in_words(condition, Met{kernel, start, false}) : "";
 }

@@ -28,6 +28,9 @@ bool is_met(const Condition& condition, const Kernel& kernel, const StageStart& 
 /// The same without forces: false if the condition cannot hold.
 bool may_be_met(const Condition& condition, const Kernel& kernel, const StageStart& start);
 
+/// Whether the condition holds only once contacts carry forces.
+bool waits_for_contacts(const Condition& condition);
+
 /// Which of several conditions ended a stage, with "any" resolved at all levels: "discharged", or "time and
 /// unbalanced-force"; "" if there was no alternative. Requires that the condition holds.
 std::string ended_by(const Condition& condition, const Kernel& kernel, const StageStart& start);

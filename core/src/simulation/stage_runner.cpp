@@ -7,6 +7,7 @@
 #include "format/number.hpp"
 #include "grit/error.hpp"
 #include "kernel/stopwatch.hpp"
+#include "run/falling.hpp"
 
 namespace grit {
 namespace {
@@ -242,10 +243,17 @@ void StageRunner::refuse_without_a_step(const StageDescription& stage) const {
 }
 
 void StageRunner::fail_late(const StageDescription& stage) const {
-  throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) +
-                      " s: " + still_wanting(stage.until, kernel_, start_) + " (" + reached() +
-                      "); give it more time (/stages/" + std::to_string(stage_) +
-                      "/limit) or a condition that it can reach");
+  throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) + " s: " +
+                      still_wanting(stage.until, kernel_, start_) + " (" + reached() + "); " + advice_when_late(stage));
+}
+
+std::string StageRunner::advice_when_late(const StageDescription& stage) const {
+  if (const Falling falling = falling_grains(world_);
+      waits_for_contacts(stage.until) && 2 * falling.grains > falling.all)
+    return std::to_string(falling.grains) + " of " + std::to_string(falling.all) +
+           " bodies have no contact and fall, at up to " + number(falling.speed) +
+           " m/s: is there a floor below them, and does gravity point towards it?";
+  return "give it more time (/stages/" + std::to_string(stage_) + "/limit) or a condition that it can reach";
 }
 
 bool StageRunner::counts_contacts() const { return world_.step() % contacts_counted_every == 0; }

@@ -95,6 +95,7 @@ class StageRunner {
   void serialize(Archive& archive);
   void refuse_without_a_step(const StageDescription& stage) const;
   [[noreturn]] void fail_late(const StageDescription& stage) const;
+  std::string advice_when_late(const StageDescription& stage) const;
   bool too_late(const StageDescription& stage) const { return world_.time() - start_.time > stage.limit; }
   bool counts_contacts() const;
   void ask_schedules();
