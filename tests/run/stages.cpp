@@ -362,6 +362,14 @@ TEST(Stage, ReportsUnmetConditions) {
   EXPECT_EQ(told(shrinking(steps(1), -20), loose), "void ratio of the interior 233, required above 500 and below 600");
   EXPECT_EQ(told(shrinking(steps(1), -20), stress), "mean stress 0 Pa, required above 2e+04 Pa");
   EXPECT_EQ(told(shrinking(steps(1), -20), along), "stress yy 0 Pa, required 3e+04 Pa ± 5 %");
+  const Description still{{"type", "at-rest"}, {"below", 1e-9}};
+  EXPECT_EQ(told(moving, still), "no force acts on the bodies, and no contact carries one yet");
+  Description falling = dropped(steps(1));
+  EXPECT_THAT(told(falling, still), testing::MatchesRegex("net forces [0-9.e-]+ of loads and contact forces, required "
+                                                          "below 1e-09, contacts carry [0-9.]+ of the load, required "
+                                                          "0.5"));
+  falling["bodies"]["grains"]["source"]["bodies"][0]["position"] = {0, 0, 2 * radius};
+  EXPECT_EQ(told(falling, still), "no contact carries load yet");
   EXPECT_THAT(told(dropped(steps(1)), rest), testing::MatchesRegex("unbalanced force [0-9.e-]+, required below 0.003"));
 }
 

@@ -178,8 +178,12 @@ struct Unmet {
   }
   std::string operator()(const AtRestCondition& c) const {
     const Support now = support(met.kernel.world());
-    return "net forces over loads and contact forces " + number(now.unbalance) + between({}, c.below) +
-           ", contacts carry " + number(now.carried) + " of the load, required 0.5";
+    if (!std::isfinite(now.unbalance)) return "no force acts on the bodies, and no contact carries one yet";
+    if (now.carried == 0) return "no contact carries load yet";
+    const bool loaded = std::isfinite(now.carried);
+    return "net forces " + number(now.unbalance) + " of " + (loaded ? "loads and contact forces" : "contact forces") +
+           between({}, c.below) +
+           (loaded ? ", contacts carry " + number(now.carried) + " of the load, required 0.5" : "");
   }
   std::string operator()(const KineticEnergyCondition& c) const {
     return "kinetic over elastic energy " + number(met.kernel.kinetic_energy_ratio()) + between({}, c.below);
