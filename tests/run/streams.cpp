@@ -170,5 +170,27 @@ TEST(Stream, RegionMustBeInsideTheDomain) {
               testing::ThrowsMessage<Error>(HasSubstr("the region of the stream leaves the domain along x")));
 }
 
+TEST(Stream, RegionMustBeAsWideAsTheLargestBody) {
+  const auto start = [](const Description& region, const Description& sizes) {
+    Started started(scene_of(stream({{"number_rate", 1000}, {"region", region}, {"sizes", sizes}})));
+  };
+  const Description metres = {{"type", "uniform"}, {"smallest", 3}, {"largest", 5}};
+  const Description disc = {{"type", "disc"}, {"centre", {0, 0, 0}}, {"radius", 0.012}},
+                    slot = {{"type", "rectangle"},
+                            {"corner", {0, 0, 0}},
+                            {"edge_a", {0.02, 0, 0}},
+                            {"edge_b", {0, 1e-4, 0}}},
+                    box = {{"type", "box"}, {"low", {0, 0, 0}}, {"high", {0.01, 0.02, 0.03}}};
+  const auto refusal = [](const std::string& width, const std::string& diameter) {
+    return testing::ThrowsMessage<Error>(HasSubstr("found a region of a stream " + width +
+                                                   " m wide, for bodies of up to " + diameter + " m in diameter"));
+  };
+  EXPECT_THAT([&] { start(disc, metres); }, refusal("0.024", "5"));
+  EXPECT_THAT([&] { start(slot, metres); }, refusal("0.02", "5"));
+  EXPECT_THAT([&] { start(box, {{"type", "list"}, {"diameters", {0.01, 0.031, 0.02}}}); }, refusal("0.03", "0.031"));
+  EXPECT_NO_THROW(start(box, {{"type", "list"}, {"diameters", {0.03}}}));
+  EXPECT_NO_THROW(start(slot, {{"type", "list"}, {"diameters", {0.02}}})) << "a slot for a plane scene";
+}
+
 }  // namespace
 }  // namespace grit::test::streams_tests

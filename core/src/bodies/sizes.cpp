@@ -88,6 +88,17 @@ std::vector<double> draw_diameters(const ListSizes& sizes, std::size_t count, Ra
   return diameters;
 }
 
+double largest_diameter(const Sizes& sizes, std::optional<double> shape_diameter) {
+  Random random(0);
+  return std::visit(
+      [&]<class S>(const S& chosen) {
+        if constexpr (requires { chosen.largest; }) return chosen.largest;
+        else if constexpr (requires { chosen.diameters; }) return std::ranges::max(chosen.diameters);
+        else return draw_diameters(sizes, 1, random, shape_diameter).front();
+      },
+      sizes.value());
+}
+
 std::vector<double> draw_diameters(const Sizes& sizes, std::size_t count, Random& random,
                                    std::optional<double> shape_diameter) {
   return std::visit(

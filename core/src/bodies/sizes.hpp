@@ -24,5 +24,7 @@ std::vector<double> draw_diameters(const ListSizes& sizes, std::size_t count, Ra
 /// was chosen, or for sizes of a shape that has none.
 std::vector<double> draw_diameters(const Sizes& sizes, std::size_t count, Random& random,
                                    std::optional<double> shape_diameter = {});
+/// The largest diameter that the chosen distribution may give [m], with the same arguments and errors.
+double largest_diameter(const Sizes& sizes, std::optional<double> shape_diameter = {});
 
 }  // namespace grit

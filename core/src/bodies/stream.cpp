@@ -57,6 +57,10 @@ Region bounds_of(const DiscRegion& region) {
 }
 Region bounds_of(const BoxRegion& region) { return {region.low, region.high}; }
 
+double width_of(const RectangleRegion& region) { return std::max(region.edge_a.norm(), region.edge_b.norm()); }
+double width_of(const DiscRegion& region) { return 2 * region.radius; }
+double width_of(const BoxRegion& region) { return (region.high - region.low).maxCoeff(); }
+
 /// Mean mass of the bodies of a stream [kg].
 double mean_mass(const StreamSource& source, const GroupBuilder& builder) {
   Random random(0);
@@ -148,6 +152,15 @@ Region bounds_of(const StreamSource& source) {
       []<class R>(const R& region) -> Region {
         if constexpr (std::same_as<R, std::monostate>) return {Vec3::Zero(), Vec3::Zero()};
         else return bounds_of(region);
+      },
+      source.region.value());
+}
+
+double width_of(const StreamSource& source) {
+  return std::visit(
+      []<class R>(const R& region) -> double {
+        if constexpr (std::same_as<R, std::monostate>) return 0;
+        else return width_of(region);
       },
       source.region.value());
 }

@@ -17,6 +17,9 @@ namespace grit {
 /// The box around the region of a stream [m].
 Region bounds_of(const StreamSource& source);
 
+/// The largest width of the region of a stream [m].
+double width_of(const StreamSource& source);
+
 /// The stream of one group of bodies: which body enters when and where. Its random numbers and counts are part of a
 /// checkpoint, so that a resumed run is identical.
 class Stream {
@@ -46,6 +49,9 @@ class Stream {
   /// wait or if several would enter within it.
   void let_in(double time, std::size_t waiting, double interval);
   std::size_t waiting() const { return waiting_; }
+  /// Diameter of the first that waits [m]; needs one.
+  double waiting_diameter() const { return diameters_.back(); }
+  double width() const { return width_of(source_); }
 
   void serialize(Archive& archive);
 

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "bodies/orientation.hpp"
+#include "bodies/sizes.hpp"
 #include "description/placed_error.hpp"
+#include "format/number.hpp"
 
 namespace grit {
 namespace {
@@ -80,6 +82,12 @@ Inflow::Inflow(const SceneDescription& scene, const Components& components) {
                                                                     std::string(1, "xyz"[k]) +
                                                                     "; move it inside, or enlarge /domain");
     GroupBuilder builder(scene, group, components.body_kinds.at(name));
+    if (const double largest = largest_diameter(source->sizes, builder.shape_diameter()), width = width_of(*source);
+        largest > width * (1 + 1e-9))
+      throw PlacedError({"bodies", name, "source", "region"},
+                        "found a region of a stream " + number(width) + " m wide, for bodies of up to " +
+                            number(largest) +
+                            " m in diameter; allowed is one as wide as the largest body; are the units of both right?");
     entries_.emplace(name, Entry{group.stage, group.velocity, builder, Stream(*source, builder, seed)});
   }
 }

@@ -14,7 +14,7 @@ namespace grit {
 /// The streams of a description.
 class Inflow {
  public:
-  /// Throws PlacedError for a region outside the domain.
+  /// Throws PlacedError for a region outside the domain, or narrower than the largest body.
   Inflow(const SceneDescription& scene, const Components& components);
 
   /// Begins the streams of this stage, and at the first stage those without one.
