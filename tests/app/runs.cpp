@@ -67,6 +67,29 @@ TEST_F(Runs, PrintOnlyResultsIfQuiet) {
   EXPECT_THAT(outcome.out, HasSubstr("results: results/two"));
 }
 
+TEST_F(Runs, WarnOfStreamsThatAreBlockedAlsoIfQuiet) {
+  auto scene = json::parse(two_grains);
+  scene["materials"]["sand"]["contact_modulus"] = 1e6;
+  scene["engines"]["gravity"] = {{"type", "gravity"}};
+  scene["bodies"]["poured"] = {{"type", "sphere"}, {"material", "sand"}};
+  scene["bodies"]["poured"]["source"] = {{"type", "stream"},
+                                         {"number_rate", 2000},
+                                         {"region", {{"type", "disc"}, {"centre", {0, 0, 0.05}}, {"radius", 0.002}}},
+                                         {"sizes", {{"type", "list"}, {"diameters", {0.002}}}}};
+  scene["stages"][0]["until"] = {{"type", "time"}, {"value", 0.02}};
+  folder.write("blocked.json", scene.dump());
+  const auto outcome = grit({"run", "blocked.json", "--quiet", "--no-report"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const std::string warning =
+      "bodies of the stream \"poured\" find no room, the next with a diameter of 0.002 m in a "
+      "region 0.004 m wide: enlarge the region (/bodies/poured/source/region), ";
+  EXPECT_THAT(outcome.err, StartsWith("grit: warning: blocked.json: " + warning));
+  ASSERT_EQ(run_json("results/blocked").at("warnings").size(), 1u);
+  EXPECT_THAT(run_json("results/blocked").at("warnings").at(0).get<std::string>(), StartsWith(warning));
+  ASSERT_EQ(grit({"run", "two.json"}).status, 0);
+  EXPECT_THAT(run_json("results/two").at("warnings"), IsEmpty());
+}
+
 TEST_F(Runs, TakeSets) {
   ASSERT_EQ(grit({"run", "two.json", "--out", "set", "--set", "/stages/0/until/value=20", "--set", "/seed=5"}).status,
             0);

@@ -170,6 +170,35 @@ TEST(Stream, RegionMustBeInsideTheDomain) {
               testing::ThrowsMessage<Error>(HasSubstr("the region of the stream leaves the domain along x")));
 }
 
+TEST(Stream, ThatIsBlockedIsReported) {
+  // A tray 1 mm below the region: it fills, and nothing else has room above.
+  Description d = stream({{"number_rate", 20000}, {"sizes", {{"type", "list"}, {"diameters", {1.5e-3}}}}});
+  d["walls"]["tray"] = {{"type", "rectangle"},
+                        {"corner", {-0.01, -0.01, 0.049}},
+                        {"edge_a", {0.04, 0, 0}},
+                        {"edge_b", {0, 0.04, 0}},
+                        {"material", "grain"}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.5}};
+  d["stages"][0] = {{"name", "pour"}, {"until", {{"type", "time"}, {"value", 0.03}}}, {"limit", 1}};
+  const std::string advice =
+      "bodies of the stream \"grains\" find no room, the next with a diameter of 0.0015 m in a region 0.02 m wide: "
+      "enlarge the region (/bodies/grains/source/region), move it away from walls and bodies, or let fewer enter";
+  const Done poured = run(d);
+  EXPECT_EQ(poured.summary().status, "done");
+  EXPECT_THAT(poured.summary().warnings, testing::ElementsAre(HasSubstr(advice)));
+  d["stages"][0]["until"] = {{"type", "steps"}, {"value", 1000000}};
+  d["stages"][0]["limit"] = 0.03;
+  const Done late = run(d);
+  EXPECT_EQ(late.summary().status, "failed");
+  EXPECT_THAT(late.summary().message,
+              testing::AllOf(HasSubstr("wait for room"), HasSubstr(advice), testing::Not(HasSubstr("more time"))));
+  EXPECT_THAT(late.summary().warnings, testing::IsEmpty()) << "the message has it";
+
+  Description sparse = stream({{"number_rate", 200}});
+  sparse["stages"][0] = {{"name", "pour"}, {"until", {{"type", "time"}, {"value", 0.03}}}, {"limit", 1}};
+  EXPECT_THAT(run(sparse).summary().warnings, testing::IsEmpty());
+}
+
 TEST(Stream, RegionMustBeAsWideAsTheLargestBody) {
   const auto start = [](const Description& region, const Description& sizes) {
     Started started(scene_of(stream({{"number_rate", 1000}, {"region", region}, {"sizes", sizes}})));

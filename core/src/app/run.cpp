@@ -209,6 +209,8 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
 
   std::cout << curves.text();
   print_speed(summary);
+  for (const std::string& warning : summary.warnings)
+    std::cerr << "grit: warning: " << job.file << ": " << warning << std::endl;
   std::cout << "results: " << folder.string() << '\n';
   if (description.output.picture) std::cout << "picture: " << (folder / "picture.svg").string() << '\n';
   // Before the page, which takes time with many bodies: a second Ctrl-C skips it.

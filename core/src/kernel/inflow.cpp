@@ -142,6 +142,22 @@ std::string Inflow::waiting() const {
   return text;
 }
 
+std::vector<std::string> Inflow::blocked() const {
+  constexpr double many = 0.01;  // of the bodies that should have entered; a few wait wherever others fall past
+  std::vector<std::string> all;
+  for (const auto& [name, entry] : entries_) {
+    const Stream& stream = entry.stream;
+    const auto waiting = static_cast<double>(stream.waiting());
+    if (stream.waiting() < most_at_once && waiting <= many * (waiting + static_cast<double>(stream.entered())))
+      continue;
+    all.push_back("bodies of the stream \"" + name + "\" find no room, the next with a diameter of " +
+                  number(stream.waiting_diameter()) + " m in a region " + number(stream.width()) +
+                  " m wide: enlarge the region (/bodies/" + name +
+                  "/source/region), move it away from walls and bodies, or let fewer enter per time");
+  }
+  return all;
+}
+
 void Inflow::serialize(Archive& archive) {
   for (auto& [name, entry] : entries_) archive(entry.stream);
 }

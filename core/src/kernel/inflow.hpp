@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "bodies/group_builder.hpp"
 #include "bodies/stream.hpp"
@@ -25,6 +26,8 @@ class Inflow {
   Bodies enter(const State& state, const World& world);
   /// Names of streams whose bodies wait, and their number; empty if there is none.
   std::string waiting() const;
+  /// Advice for each stream of which many bodies wait.
+  std::vector<std::string> blocked() const;
 
   void serialize(Archive& archive);
 

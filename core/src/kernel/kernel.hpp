@@ -46,6 +46,8 @@ class Kernel {
   std::string fallen_behind() const;
   /// Bodies of streams that wait for room, in words; empty if there are none.
   std::string waiting_bodies() const { return inflow_.waiting(); }
+  /// Advice for each stream of which many bodies wait.
+  std::vector<std::string> blocked_streams() const { return inflow_.blocked(); }
   double body_steps() const { return stepper_.body_steps(); }
   unsigned threads() const { return passes_.threads(); }
   std::vector<PhaseTime> phases() const { return passes_.phases(); }

@@ -50,6 +50,7 @@ double cpu_seconds() {
 RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std::move(path)) {
   json_ = {{"status", "running"},
            {"message", ""},
+           {"warnings", Description::array()},
            {"grit", grit_facts()},
            {"host",
             {{"name", host_name()},
@@ -127,6 +128,7 @@ void RunJson::finish(const World& world, const RunSummary& summary) {
   progress(world);
   json_["status"] = summary.status;
   json_["message"] = summary.message;
+  json_["warnings"] = summary.warnings;
   json_["stage"] = summary.stage;
   json_["time"] = summary.time;
   json_["steps"] = summary.steps;

@@ -36,8 +36,9 @@ struct ProbeTime {
 
 /// How a run ended.
 struct RunSummary {
-  std::string status;         ///< "done", "interrupted", "failed"
-  std::string message;        ///< of the failure
+  std::string status;   ///< "done", "interrupted", "failed"
+  std::string message;  ///< of the failure
+  std::vector<std::string> warnings;
   Guard guard = Guard::none;  ///< the one that stopped the run
   std::string stage;          ///< the last one
   double time = 0;            ///< simulated, s

@@ -253,6 +253,7 @@ std::string StageRunner::advice_when_late(const StageDescription& stage) const {
     return std::to_string(falling.grains) + " of " + std::to_string(falling.all) +
            " bodies have no contact and fall, at up to " + number(falling.speed) +
            " m/s: is there a floor below them, and does gravity point towards it?";
+  if (const auto blocked = kernel_.blocked_streams(); !blocked.empty()) return blocked.front();
   return "give it more time (/stages/" + std::to_string(stage_) + "/limit) or a condition that it can reach";
 }
 
@@ -320,6 +321,7 @@ void StageRunner::finish(RunSummary& summary) {
   sample(true);
   if (!scene_.description->output.frames.never()) frame();
   fill(summary);
+  if (summary.status == "done") summary.warnings = kernel_.blocked_streams();
   recorder_.finish(world_, summary);
 }
 
