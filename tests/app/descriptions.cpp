@@ -716,6 +716,23 @@ TEST(Descriptions, CheckWarnsWhereGravityIsForgotten) {
   EXPECT_THAT(check("settling.json", R"(/walls/floor/motion={"velocity": [0, 0, "1 mm/s"]})"), none);
 }
 
+TEST(Descriptions, CheckWarnsOfDensitiesThatNoSolidHas) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto check = [&](const std::string& density) {
+    const auto outcome = grit_in(folder.path(), {"check", "two.json", "--set", R"(/materials/glass={"density": 1})",
+                                                 "--set", "/materials/sand/density=" + density});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string warning = "\nwarning\n  /materials/sand/density: ";
+  EXPECT_THAT(check("2.65"),
+              HasSubstr(warning + "2.65 kg/m^3 is far from any solid; did you mean 2.65 g/cm^3? A density that "));
+  EXPECT_THAT(check("2.65e6"), HasSubstr(warning + "2.65e+06 kg/m^3 is far from any solid; is the unit right? "));
+  for (const char* density : {"2.65 g/cm^3", "50", "25000"})
+    EXPECT_THAT(check(density), testing::Not(HasSubstr("far from any solid"))) << "no body is of glass";
+}
+
 TEST(Descriptions, CheckReportsBodiesThatFallForEver) {
   const OwnFolder folder;
   auto cell = json::parse(two_grains);

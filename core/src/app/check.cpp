@@ -21,6 +21,7 @@
 #include "lint/endless_fall.hpp"
 #include "lint/excess_depth.hpp"
 #include "lint/installed_studies.hpp"
+#include "lint/odd_densities.hpp"
 #include "lint/repeated_geometry.hpp"
 #include "lint/short_reach.hpp"
 #include "lint/soft_contacts.hpp"
@@ -160,6 +161,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   std::ranges::move(tensile_targets(scene, live.geometries().all()), std::back_inserter(warnings));
   std::ranges::move(missed_targets(scene), std::back_inserter(warnings));
   std::ranges::move(soft_contacts(scene, kernel.world()), std::back_inserter(warnings));
+  std::ranges::move(odd_densities(description), std::back_inserter(warnings));
   for (const auto& [pointer, why] : warnings) std::cout << "\nwarning\n  " << pointer << ": " << why << '\n';
   auto idle = unused_settings(scene, components, kernel);
   std::ranges::move(unused_motions(scene), std::back_inserter(idle));
