@@ -53,6 +53,15 @@ TEST(Describe, ShowsSectionsAndComponents) {
   outcome = grit_in(folder.path(), {"describe", "gravity"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.out, AllOf(StartsWith("engine \"gravity\""), HasSubstr("acceleration")));
+  outcome = grit_in(folder.path(), {"describe", "at-rest"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(StartsWith("in the section stages\nname "), HasSubstr("\"at-rest\""),
+                                 HasSubstr("\n        below "), Not(HasSubstr("unbalanced-force\""))));
+  outcome = grit_in(folder.path(), {"describe", "stream"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(StartsWith("in the section bodies\nname "), HasSubstr("number_rate"),
+                                 HasSubstr("\"disc\""), Not(HasSubstr("\"cloud\""))));
+  EXPECT_THAT(grit_in(folder.path(), {"describe", "at-rst"}).err, HasSubstr("did you mean \"at-rest\"?"));
   outcome = grit_in(folder.path(), {"describe"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("\n  stages "), HasSubstr("\n  linear-rolling\n")));

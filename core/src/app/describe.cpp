@@ -1,5 +1,10 @@
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app/options.hpp"
 #include "app/reference.hpp"
@@ -21,6 +26,40 @@ std::string section_text(const Parameters& all, const std::string& name) {
     return reference_text(one);
   }
   return "";
+}
+
+/// A type that a section lets the user choose: a condition, a source of bodies, a size distribution.
+struct SectionType {
+  std::string section, name;
+  std::string text;  ///< its part of the section's reference
+};
+
+/// Those of all sections whose components can be loaded.
+std::vector<SectionType> types_of(const Parameters& all) {
+  std::vector<SectionType> types;
+  for (const Parameter& section : all.entries()) {
+    std::vector<std::pair<std::size_t, std::size_t>> open;  // indents and indices of the types around a line
+    std::istringstream lines;
+    try {
+      lines.str(section_text(all, section.name()));
+    } catch (const PluginError&) {
+      continue;
+    }
+    std::string head;
+    std::getline(lines, head);
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t indent = line.find_first_not_of(' ');
+      if (indent == std::string::npos) continue;
+      while (!open.empty() && indent <= open.back().first) open.pop_back();
+      if (line[indent] == '"') {
+        open.emplace_back(indent, types.size());
+        types.push_back(
+            {section.name(), line.substr(indent + 1, line.find('"', indent + 1) - indent - 1), head + '\n'});
+      }
+      for (const auto& [_, type] : open) types[type].text += line + '\n';
+    }
+  }
+  return types;
 }
 
 /// The reference of files for `grit study`.
@@ -67,11 +106,23 @@ ExitStatus describe_command(const std::vector<std::string>& words) {
   }
   std::vector<std::string> names{"study"};
   for (const Parameter& section : all.entries()) names.push_back(section.name());
-  for (const Installed& one : registry->installed()) names.push_back(one.name);
-  if (std::ranges::find(names, name) == names.end())
+  for (const Installed& one : registry->installed()) {
+    if (one.name == name) {
+      std::cout << component_text(*registry, name, false);
+      return ExitStatus::done;
+    }
+    names.push_back(one.name);
+  }
+  std::string section;  // each once: clouds and streams have the same sizes
+  for (const SectionType& type : types_of(all)) {
+    names.push_back(type.name);
+    if (type.name != name || type.section == section) continue;
+    std::cout << (section.empty() ? "" : "\n") << "in the section " << type.section << '\n' << type.text;
+    section = type.section;
+  }
+  if (section.empty())
     throw PluginError("unknown section or component \"" + name + '"' +
                       did_you_mean(name, names, "'grit describe' lists all") + "\n  " + registry->search_text());
-  std::cout << component_text(*registry, name, false);
   return ExitStatus::done;
 }
 
