@@ -248,11 +248,15 @@ void StageRunner::fail_late(const StageDescription& stage) const {
 }
 
 std::string StageRunner::advice_when_late(const StageDescription& stage) const {
-  if (const Falling falling = falling_grains(world_);
-      waits_for_contacts(stage.until) && 2 * falling.grains > falling.all)
-    return std::to_string(falling.grains) + " of " + std::to_string(falling.all) +
-           " bodies have no contact and fall, at up to " + number(falling.speed) +
-           " m/s: is there a floor below them, and does gravity point towards it?";
+  if (waits_for_contacts(stage.until)) {
+    const Falling falling = falling_grains(world_);
+    if (2 * falling.grains > falling.all)
+      return std::to_string(falling.grains) + " of " + std::to_string(falling.all) +
+             " bodies have no contact and fall, at up to " + number(falling.speed) +
+             " m/s: is there a floor below them, and does gravity point towards it?";
+    if (falling.all > 0 && !std::isfinite(support(world_).unbalance))
+      return "without gravity or another force (/engines) bodies do not come to rest on each other";
+  }
   if (const auto blocked = kernel_.blocked_streams(); !blocked.empty()) return blocked.front();
   return "give it more time (/stages/" + std::to_string(stage_) + "/limit) or a condition that it can reach";
 }
