@@ -13,6 +13,7 @@
 namespace grit::test::guards_tests {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 /// Applies a force of NaN to every body from the fifth step on.
@@ -69,6 +70,11 @@ TEST(Guards, Overlap) {
   EXPECT_THAT(complaint(wall, 1), HasSubstr("step 0, time 0 s: body 0 at (0, 0, 0.0007) m appears inside wall "
                                             "\"floor\": they overlap by 0.3 of its radius, "
                                             "more than /guards/overlap 0.2; place it in front of the wall"));
+  Description thrown = description("linear-rolling", {{"contact_modulus", 1e7}}, {{{0, 0, 1e-3}, 1e-3, {0, 0, -20}}});
+  thrown["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  thrown["time_step"]["value"] = 1e-6;
+  EXPECT_THAT(complaint(thrown, 200),
+              AllOf(HasSubstr("overlaps wall \"floor\" by 0."), HasSubstr("the wall may face away from the bodies")));
 }
 
 TEST(Guards, Travel) {

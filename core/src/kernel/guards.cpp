@@ -30,7 +30,8 @@ namespace {
                (starts ? "appears inside " + wall + ": they overlap by " : "overlaps " + wall + " by ") + deep +
                    ", more than /guards/overlap " + allowed,
                starts ? "place it in front of the wall; the box of a cloud must not contain walls"
-                      : "the contact modulus may be too low for this load, or the wall too fast");
+                      : "the wall may face away from the bodies, the contact modulus be too low for this load, or the "
+                        "wall too fast");
 }
 
 }  // namespace
