@@ -250,10 +250,10 @@ TEST(Groups, NothingIsCopiedThatNoProbeAsksFor) {
 TEST(Groups, AHeapBesideOtherBodies) {
   FakeWorld sand;
   constexpr double slope = 0.5, height = 0.01;
-  for (int ring = 0; ring < 18; ++ring)
-    for (int k = 0; k < 32; ++k) {
-      const double angle = 2 * std::numbers::pi * (k + 0.5) / 32, r = (2 * ring + 1) * 0.5e-3;
-      sand.add({r * std::cos(angle), r * std::sin(angle), height - slope * r - 0.5e-3}, 0.5e-3);
+  for (int i = -20; i < 20; ++i)
+    for (int j = -20; j < 20; ++j) {
+      const double x = (i + 0.5) * 1e-3, y = (j + 0.5) * 1e-3, top = height - slope * std::hypot(x, y);
+      if (top > 0) sand.add({x, y, top - 0.5e-3}, 0.5e-3);
     }
   const auto heap_end = static_cast<std::uint32_t>(sand.id.size());
   for (std::uint32_t i = 0; i + 1 < heap_end; ++i) sand.add_contact(i, i + 1, {1e-3, 0, 0}, {1, 0, 0});
