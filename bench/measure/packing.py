@@ -147,8 +147,9 @@ def _press(program, folder, pressure):
 
 
 def _pressure(done):
-    """The final mean stress of a run [Pa], from its output."""
-    return float(re.search(r'^packing/mean_stress: .*final (\S+)', done.output, re.M).group(1))
+    """The final mean stress of a run [Pa], from its output, which may have a prefix of the unit."""
+    value, prefix = re.search(r'^packing/mean_stress: .*final (\S+) ([GMkmµ]?)Pa', done.output, re.M).groups()
+    return float(value) * {'G': 1e9, 'M': 1e6, 'k': 1e3, '': 1, 'm': 1e-3, 'µ': 1e-6}[prefix]
 
 
 def _run_once(program, scene, folder, settings):
