@@ -39,7 +39,7 @@ TEST(CellServo, KeepsDifferentStressesAlongTheAxes) {
   EXPECT_NEAR(kept.z(), 1.6e5, 1e-3 * 1.6e5);
 }
 
-/// Deviations of the stress along x from 1e5 Pa.
+/// Deviations of the stress along x from 1e5 Pa; the worst, of that along y, too.
 struct Deviations {
   double root_mean_square, worst, mean;
 };
@@ -48,13 +48,14 @@ Deviations deviations(Trial& t, double until) {
   int samples = 0;
   while (t.world().time() < until) {
     t.step_on(50);
-    const double off = stress(t.world()).x() / 1e5 - 1;
-    worst = std::max(worst, std::abs(off)), squares += off * off, sum += off, ++samples;
+    const Vec3 now = stress(t.world());
+    const double off = now.x() / 1e5 - 1;
+    worst = std::max({worst, std::abs(off), std::abs(now.y() / 1e5 - 1)}), squares += off * off, sum += off, ++samples;
   }
   return {std::sqrt(squares / samples), worst, sum / samples};
 }
 
-// Grains rearrange all of a sudden. Eight packings of this kind deviate by 0.1 … 0.34 % (root mean square) at an
+// Grains rearrange suddenly. Eight packings of this kind deviate by 0.1 … 0.34 % (root mean square) at an
 // inertial number of 3e-4, with peaks of 1 … 4 %; slowly, by less than 0.1 %.
 TEST(CellServo, KeepsLateralStressWhileTheCellIsSheared) {
   Description d = packing({{"xx", 1e5}, {"yy", 1e5}, {"zz", 1e5}});
@@ -72,8 +73,8 @@ TEST(CellServo, KeepsLateralStressWhileTheCellIsSheared) {
   const Vec3 before = logarithmic_strain(t.world());
   deviations(t, 0.03);
   const Deviations fast = deviations(t, 0.06);
-  EXPECT_LT(fast.root_mean_square, 0.01);
-  EXPECT_LT(fast.worst, 0.1);
+  EXPECT_LT(fast.root_mean_square, 0.005);
+  EXPECT_LT(fast.worst, 0.06);
   EXPECT_NEAR(fast.mean, 0, 1e-3) << "no error remains in steady deformation";
   const Vec3 strain = logarithmic_strain(t.world()) - before;
   EXPECT_NEAR(strain.z(), -2 * 0.04, 1e-3);

@@ -9,7 +9,7 @@
 
 namespace grit {
 
-/// Stands for the index of a body that has left the simulation.
+/// Index that marks a body as removed.
 inline constexpr std::uint32_t body_gone = ~0u;
 
 /// The present index of each body by its former one, or body_gone. `order[i]` is the former index of the body that now

@@ -91,7 +91,7 @@ TEST(Heap, HasTheAngleOfTheSlopeBelowACutTop) {
   EXPECT_NEAR(channel_value(*probe(), world, "height"), 0.008, 1e-12);
 }
 
-/// Choosing parts of the surface by their own heights would flatten it, by 3° to 10°.
+/// Choosing parts of the surface by their own heights would flatten it.
 TEST(Heap, HasTheAngleOfGrainsAtRandomUnderACone) {
   for (const double angle : {15.0, 25.0, 35.0})
     for (const double height : {8e-3, 16e-3}) {
