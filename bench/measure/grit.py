@@ -61,6 +61,14 @@ class Done(NamedTuple):
     others: float
     facts: dict
 
+    def final(self, series, unit=''):
+        """The last value of a series of the summary, in `unit`; it may be printed with a prefix."""
+        found = re.search(rf'^{series}: .*final (\S+) ?([GMkmµ]?){unit}$', self.output, re.M)
+        if not found:
+            raise Complaint(f'there is no "{series}" in {unit or "numbers"} in the summary:\n{self.output[-2000:]}')
+        value, prefix = found.groups()
+        return float(value) * {'G': 1e9, 'M': 1e6, 'k': 1e3, '': 1, 'm': 1e-3, 'µ': 1e-6}[prefix]
+
 
 def _fresh(folder):
     """Makes the folder, without run.json of an earlier run."""

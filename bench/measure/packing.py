@@ -4,6 +4,7 @@ import json
 import math
 import os
 import re
+import statistics
 from pathlib import Path
 from typing import NamedTuple
 
@@ -147,19 +148,8 @@ def _press(program, folder, pressure):
 
 
 def _pressure(done):
-    """The final mean stress of a run [Pa], from its output, which may have a prefix of the unit."""
-    value, prefix = re.search(r'^packing/mean_stress: .*final (\S+) ([GMkmµ]?)Pa', done.output, re.M).groups()
-    return float(value) * {'G': 1e9, 'M': 1e6, 'k': 1e3, '': 1, 'm': 1e-3, 'µ': 1e-6}[prefix]
-
-
-def _run_once(program, scene, folder, settings):
-    """The packing at the end of a scene; the folder is renamed when complete."""
-    if not folder.is_dir():
-        say(f'making {folder} …')
-        part = folder.with_name(folder.name + '.part')
-        grit.run(program, scene, part, threads=None, settings=settings)
-        part.rename(folder)
-    return read(folder / 'packing.txt')
+    """The final mean stress of a run [Pa]."""
+    return done.final('packing/mean_stress', 'Pa')
 
 
 def _solids(sizes, count):
@@ -212,9 +202,61 @@ def wide(program, grains):
     return made(program, 'wide', grains, WIDE, 0.4)
 
 
-def filled(program, scene, settings=None):
-    """The grains for bench/scenes/SCENE.json, made by SCENE-fill.json with `settings`."""
-    settings = settings or {}
+def _fill(program, scene, settings):
+    """Folder of the results of SCENE-fill.json with `settings`, run once; the folder is renamed when complete."""
     own, fill = PACK.with_name(f'{scene}.json'), PACK.with_name(f'{scene}-fill.json')
     digest = hashlib.sha256((fill.read_text() + own.read_text() + (json.dumps(settings) if settings else '')).encode()).hexdigest()[:8]
-    return _run_once(program, fill, STORE / f'{scene}-{digest}', settings)
+    folder = STORE / f'{scene}-{digest}'
+    if not folder.is_dir():
+        say(f'making {folder} …')
+        part = folder.with_name(folder.name + '.part')
+        grit.run(program, fill, part, threads=None, settings=settings)
+        part.rename(folder)
+    return folder
+
+
+def filled(program, scene, settings=None):
+    """The grains for bench/scenes/SCENE.json, made by SCENE-fill.json with `settings`."""
+    return read(_fill(program, scene, settings or {}) / 'packing.txt')
+
+
+class Flow(NamedTuple):
+    """Grains in motion, as a data file of LAMMPS, which LIGGGHTS and grit read too."""
+    path: Path
+    grains: int
+    radii: tuple  # smallest and mean [m]
+    digest: str   # first letters of the file's SHA-256
+
+    def __str__(self):
+        return f'{self.path.parent.name} (sha256 {self.digest})'
+
+
+def flowing(program, scene, settings=None):
+    """The same as `filled`, with velocities and spins."""
+    folder = _fill(program, scene, settings or {})
+    grains, data = _dumped(folder / 'frames' / '000000.dump'), folder / 'grains.data'
+    if not data.is_file():
+        given = json.loads(PACK.with_name(f'{scene}.json').read_text(encoding='utf-8'))
+        part = folder / 'grains.data.part'
+        with open(part, 'w', encoding='utf-8') as out:
+            out.write(f'{scene}\n\n{len(grains)} atoms\n1 atom types\n\n')
+            out.writelines(f'{low!r} {high!r} {axis}lo {axis}hi\n'
+                           for axis, low, high in zip('xyz', given['domain']['low'], given['domain']['high']))
+            density = given['materials']['sand']['density']
+            out.write('\nAtoms\n\n')
+            out.writelines(f"{i} 1 {2 * float(one['radius'])!r} {density!r} {one['x']} {one['y']} {one['z']}\n"
+                           for i, one in enumerate(grains, 1))
+            out.write('\nVelocities\n\n')
+            out.writelines(' '.join([str(i), *(one[name] for name in ('vx', 'vy', 'vz', 'omegax', 'omegay', 'omegaz'))]) + '\n'
+                           for i, one in enumerate(grains, 1))
+        part.rename(data)
+    radii = [float(one['radius']) for one in grains]
+    return Flow(data, len(grains), (min(radii), statistics.mean(radii)),
+                hashlib.sha256(data.read_bytes()).hexdigest()[:12])
+
+
+def _dumped(path):
+    """Grains of a dump as dictionaries of texts."""
+    with open(path, encoding='utf-8') as lines:
+        names = next(line for line in lines if line.startswith('ITEM: ATOMS')).split()[2:]
+        return [dict(zip(names, line.split())) for line in lines]

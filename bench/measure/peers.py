@@ -60,11 +60,32 @@ class Timed(NamedTuple):
     others: float    # cores that other processes kept busy meanwhile
     of_critical: Optional[float] = None  # the time step over the critical one, if known
     reached: str = ''                    # fraction of the limit of the machine, as text
+    flow: Optional[dict] = None          # what tells one flow from another, and the time that it takes
+
+
+def molecular(code, scene, values, threads, folder):
+    """LAMMPS or LIGGGHTS, one rank per core: (the run, seconds of the timed steps)."""
+    command = [PROGRAMS[code], '-in', INPUTS / f'{scene}.{code}', '-log', 'none']
+    for name, value in values.items():
+        command += ['-var', name, f'{value:.12e}' if isinstance(value, float) else value]
+    if threads > 1:
+        command = ['mpirun', '--allow-run-as-root', '-np', threads, '--bind-to', 'core', *command]
+    done = machine.run(command, threads, folder)
+    timed = re.search(r'^TIMED$(.*?)^END$', done.output, re.M | re.S)
+    loop = timed and re.search(rf"^Loop time of (\S+) on \d+ procs for {values['steps']} steps", timed.group(1), re.M)
+    if not loop:
+        raise no_result(code, done)
+    return done, float(loop.group(1))
+
+
+def no_result(code, done):
+    return Complaint(f'{code} ended without a result; its output:\n{done.output[-2000:]}')
 
 
 class Box:
     """One packing, for every code."""
 
+    scene = 'dense'
     shares = None  # fractions of the limits of the machine, if known
 
     def __init__(self, packing, program):
@@ -96,7 +117,7 @@ class Box:
                             'OMP_PROC_BIND': 'true', 'OMP_PLACES': 'cores'})
         found = re.search(r'^RESULT (\[.*\])', done.output, re.M)
         if not found:
-            raise Complaint('yade ended without a result; its output:\n' + done.output[-2000:])
+            raise no_result('yade', done)
         seconds, before, after = json.loads(found.group(1))
         return self.packing.grains * steps / seconds, (before + after) / 2, done.others
 
@@ -119,20 +140,12 @@ class Box:
         return self._molecular('liggghts', values, threads, warm, steps)
 
     def _molecular(self, code, values, threads, warm, steps):
-        """LAMMPS and LIGGGHTS, one rank per core."""
         values |= {'data': self._atoms(), 'skin': SKIN, 'dt': TIME_STEP, 'warm': warm, 'steps': steps}
-        command = [PROGRAMS[code], '-in', INPUTS / f'dense-box.{code}', '-log', 'none']
-        for name, value in values.items():
-            command += ['-var', name, f'{value:.12e}' if isinstance(value, float) else value]
-        if threads > 1:
-            command = ['mpirun', '--allow-run-as-root', '-np', threads, '--bind-to', 'core', *command]
-        done = machine.run(command, threads, self.folder)
-        timed = re.search(r'^TIMED$(.*?)^END$', done.output, re.M | re.S)
-        loop = timed and re.search(rf'^Loop time of (\S+) on \d+ procs for {steps} steps', timed.group(1), re.M)
+        done, seconds = molecular(code, 'dense-box', values, threads, self.folder)
         contacts = re.findall(r'^CONTACTS (\S+)$', done.output, re.M)
-        if not loop or len(contacts) != 2:
-            raise Complaint(f'{code} ended without a result; its output:\n{done.output[-2000:]}')
-        return self.packing.grains * steps / float(loop.group(1)), sum(map(float, contacts)) / 2, done.others
+        if len(contacts) != 2:
+            raise no_result(code, done)
+        return self.packing.grains * steps / seconds, sum(map(float, contacts)) / 2, done.others
 
     def _plain(self):
         """The grains without comments, relative to the corner of the cell."""
