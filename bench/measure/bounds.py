@@ -12,6 +12,14 @@ RATIOS = {
     ('hertz', 50000, 1, 'lammps'): (3, 5),
 }
 
+# The same of a flow: (scene, threads) → (bound, goal), against any code
+FLOWS = {('drum', 1): (4, 5), ('silo', 1): (4, 5)}
+
+
+def ratio(scene, law, grains, threads, code):
+    """Bound and goal, None without."""
+    return RATIOS.get((law, grains, threads, code), (None, None)) if scene == 'dense' else FLOWS.get((scene, threads), (None, None))
+
 
 MISSES = '**misses**'
 

@@ -74,6 +74,24 @@ class Bench(unittest.TestCase):
             self.assertIn(f"| grit | {row['law']}", done.stdout)
             self.assertTrue(0.2 < row['of_critical'] < 1, row['of_critical'])
 
+    def test_flows_agree_between_codes(self):
+        sys.path.insert(0, str(BENCH))
+        from measure import flow, peers  # knows the store from here on
+        # Few grains near the wall, or the floor.
+        few = {'drum': {'region': {'type': 'box', 'low': [-0.02, -0.09, 0], 'high': [0.02, -0.06, 0.1]}, 'count': 400},
+               'silo': {'high': [0.16, 0.05, 0.04], 'count': 1000}}
+        for scene, source in few.items():
+            settings = {f'/bodies/sand/source/{key}': value for key, value in source.items()} | {'/stages/0/until/value': 0.1}
+            box = flow.Flow(scene, GRIT, settings | ({'/stages/1/until/value': 0.02} if scene == 'silo' else {}))
+            found = {code: box.run(code, 'hertz', 1, 20, 100) for code in ('grit', flow.OWN_STEP, 'liggghts', 'lammps')
+                     if code == flow.OWN_STEP or peers.installed(code)}
+            for code, one in found.items():
+                with self.subTest(scene=scene, code=code):
+                    self.assertGreater(one.contacts, 0.2)
+                    self.assertTrue(0 < one.of_critical < 1.5 if 'grit' in code else one.of_critical is None)
+                    for figure, own in ((one.contacts, found['grit'].contacts), (one.flow['energy'], found['grit'].flow['energy'])):
+                        self.assertAlmostEqual(figure / own, 1, delta=0.05)
+
     @unittest.skipIf(not CLOCK.is_file(), 'built without GRIT_BENCH')
     def test_rows_are_measured(self):
         out = self.place / 'rows.json'
@@ -96,7 +114,7 @@ class Bench(unittest.TestCase):
         self.refused(call(*compare, '--packing', self.place / 'nothing.txt'), 'no such packing', 'omit --packing')
         self.refused(call(*compare, '--laws', 'rolling,rocking'), '--laws', 'rocking', 'allowed are rolling, no-rolling, hertz')
         self.refused(call(*compare, '--codes', 'esys'), 'esys', 'allowed are grit')
-        for option in ('--codes', '--laws', '--threads', '--grains'):
+        for option in ('--scenes', '--codes', '--laws', '--threads', '--grains'):
             self.refused(call(*compare, option, ''), option, 'found ""')
         self.refused(call(*compare, '--threads', '1,1'), '--threads', '"1,1"', 'each once')
         self.refused(call(*compare, '--threads', 'x'), '--threads', 'found "x"', 'whole numbers')
@@ -105,6 +123,10 @@ class Bench(unittest.TestCase):
             self.refused(call(*compare, '--packing', self.packing, f'--side={side}'), '--side', f'"{side}"', 'above 0')
         self.refused(call(*compare, '--packing', self.packing, '--grains', 500), '--grains', 'beside --packing')
         self.refused(call(*compare, '--side', 1), '--side', 'without --packing')
+        self.refused(call(*compare, '--scenes', 'drum,sand'), '--scenes', 'found "drum,sand"', 'allowed are dense, drum, silo')
+        self.refused(call(*compare, '--scenes', 'drum', '--quick'), '--scenes', 'found "drum" beside --quick')
+        for option, value in (('--laws', 'rolling'), ('--grains', 500), ('--packing', self.packing)):
+            self.refused(call(*compare, '--scenes', 'drum,silo', option, value), option, 'without dense in --scenes')
         self.refused(call(*compare, '--rounds', 0), 'at least 1')
         for script in ('compare', 'rows'):
             self.refused(call(BENCH / script, '--grit', GRIT, '--json', self.place / 'no' / 'rows.json'), '--json',

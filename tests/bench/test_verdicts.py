@@ -8,6 +8,7 @@ import importlib.util
 import io
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -24,7 +25,7 @@ BENCH = ROOT / 'bench'
 sys.path.insert(0, str(BENCH))
 _store = tempfile.TemporaryDirectory()
 os.environ['GRIT_BENCH_STORE'] = _store.name
-from measure import bounds, disassembly, grit, limits, machine, packing, peers  # noqa: E402
+from measure import bounds, disassembly, flow, grit, limits, machine, packing, peers  # noqa: E402
 
 STORE = Path(_store.name)
 
@@ -264,6 +265,92 @@ class Compare(Given):
         self.assertRegex(out, 'one core of this machine: not measured: .*bench_kernels: there is no time left')
         self.assertIn('| code | law |', out)
         self.assertEqual(status, 1)
+
+
+class Flows(Given):
+    FLOW = packing.Flow(Path('/store/flow/grains.data'), 40000, (1.5e-3, 1.75e-3), 'c0ffee')
+
+    def flow(self, scene):
+        with mock.patch.object(packing, 'flowing', lambda program, scene, settings: self.FLOW):
+            return flow.Flow(scene, self.fake)
+
+    def compare(self, speeds, *words, energies=None, others=0.0):
+        """`speeds` in particle-steps/s by code; grit's own step is twice as long."""
+        def run(box, code, law, threads, warm, steps):
+            figures = {'energy': (energies or {}).get(code, 5e-7), 'flow': 27.5, 'step': 3.7e-5, 'seconds_per_second': 1e9 / speeds[code]}
+            if code == flow.OWN_STEP:
+                figures |= {'step': 7.4e-5, 'seconds_per_second': 0.5e9 / speeds[code]}
+            return peers.Timed(speeds[code], 4.2, others, flow=figures)
+        speeds = speeds | ({flow.OWN_STEP: speeds['grit']} if 'grit' in speeds else {})
+        with mock.patch.object(packing, 'flowing', lambda program, scene, settings: self.FLOW), \
+                mock.patch.object(flow.Flow, 'run', run), mock.patch.object(peers, 'installed', lambda code: True), \
+                mock.patch.object(peers, 'versions', lambda codes, program: {}):
+            return self.call(script('compare'), '--grit', self.fake, '--codes', ','.join(one for one in speeds if one != flow.OWN_STEP),
+                             '--scenes', 'drum', '--threads', 1, '--rounds', 1, *words)
+
+    def test_a_flow_has_its_bound(self):
+        written = self.place / 'rows.json'
+        for ratio, status, verdict in ((5.5, 0, 'as wanted'), (4.5, 0, 'holds'), (3, 1, bounds.MISSES)):
+            found, out, errors = self.compare({'grit': ratio * 1e6, 'lammps': 1e6}, '--json', written)
+            self.assertRegex(out, rf'\| drum \| lammps \| 40000 \| 1 \| 4.20 \| 0.500 \| 27.5° \| 37 .*\| {ratio:.2f} \| ≥ 4, wanted 5 '
+                             rf'\| {re.escape(verdict)} \| 1000 \| {2 * ratio:.2f} \|', errors)
+            self.assertNotIn('| code | law |', out)
+            self.assertEqual(found, status)
+        rows = json.loads(written.read_text())['rows']
+        self.assertEqual([(row['scene'], row['code']) for row in rows], [('drum', 'grit'), ('drum', flow.OWN_STEP), ('drum', 'lammps')])
+
+    def test_another_flow_gets_no_verdict(self):
+        status, out, errors = self.compare({'grit': 3e6, 'lammps': 1e6}, energies={'lammps': 5.5e-7})
+        self.assertIn('| another flow |', out, errors)
+        self.assertNotIn(bounds.MISSES, out)
+        self.assertEqual(status, 0)
+
+    def test_a_flow_needs_a_code_that_runs_it(self):
+        status, _, errors = self.compare({'yade': 1e6})
+        self.assertIn('none that is installed and runs drum; allowed are grit, liggghts, lammps', errors)
+        self.assertEqual(status, 2)
+
+    def test_states_of_other_codes_are_read(self):
+        said = ('STATE 40000 4.2 0.020 0.01 -0.01732\nTIMED\nLoop time of 4 on 1 procs for 200 steps with 40000 atoms\nEND\n'
+                'STATE 39000 4.0 0.039 0.02 -0.02\n')
+        for scene, figure in (('drum', 37.5), ('silo', 1000 / (200 * 3.7e-5))):
+            box = self.flow(scene)
+            box.folder = self.place
+            with mock.patch.object(machine, 'run', lambda *words: machine.Run(said, 5.0, 0.0)):
+                found = box.run('lammps', 'hertz', 1, 100, 200)
+                self.assertEqual((found.speed, round(found.contacts, 6)), (39500 * 200 / 4, 4.1))
+                self.assertAlmostEqual(found.flow['energy'], 0.75e-6)
+                self.assertAlmostEqual(found.flow['flow'] / figure, 1, 3)
+                self.assertAlmostEqual(found.flow['seconds_per_second'], 4 / (200 * 3.7e-5))
+            with mock.patch.object(machine, 'run', lambda *words: machine.Run(said.replace('STATE 39', 'ERROR'), 5.0, 0.0)), \
+                    self.assertRaisesRegex(machine.Complaint, 'lammps ended without a result'):
+                box.run('lammps', 'hertz', 1, 100, 200)
+
+    def test_states_of_grit_are_read(self):
+        said = ('packing_before/coordination_number: peak 4.3, final 4.2\npacking_before/kinetic_energy: peak 21 mJ, final 20 mJ\n'
+                'bed_before/angle: peak 30, final 30\npacking/coordination_number: peak 4.2, final 4\n'
+                'packing/kinetic_energy: peak 20 mJ, final 20 mJ\nbed/angle: peak 31, final 31\n')
+        stages = [{'bodies': 40000, 'step': 100, 'time': 0.5, 'wall_s': 1.0}, {'bodies': 40000, 'step': 300, 'time': 0.75, 'wall_s': 3.0}]
+        done = grit.Done(said, 0.0, {'stages': stages, 'time_step_s': 4e-5, 'critical_time_step_s': 5e-5})
+        with mock.patch.object(grit, 'run', lambda *words: done):
+            found = self.flow('drum').run(flow.OWN_STEP, 'hertz', 1, 100, 200)
+        self.assertEqual((found.speed, found.of_critical), (40000 * 200 / 2, 0.8))
+        self.assertEqual([round(found.flow[key], 9) for key in flow.FIGURES], [5e-7, 30.5, 0.00125, 8.0])
+        self.assertAlmostEqual(found.contacts, 4.1)
+        with self.assertRaisesRegex(machine.Complaint, 'no "packing/void_ratio" in numbers in the summary'):
+            done.final('packing/void_ratio')
+
+    def test_grains_in_motion_are_a_data_file(self):
+        (self.place / 'frames').mkdir()
+        (self.place / 'frames' / '000000.dump').write_text(
+            'ITEM: TIMESTEP\n7\nITEM: ATOMS id type x y z radius vx vy vz omegax omegay omegaz\n'
+            '0 1 .1 .2 .3 0.001 1 2 3 4 5 6\n1 1 .4 .5 .6 0.002 7 8 9 10 11 12\n')
+        with mock.patch.object(packing, '_fill', lambda program, scene, settings: self.place):
+            found = packing.flowing(self.fake, 'drum-hertz')
+        self.assertEqual((found.grains, found.radii), (2, (0.001, 0.0015)))
+        written = found.path.read_text()
+        self.assertIn('2 atoms\n1 atom types\n\n-0.101 0.101 xlo xhi\n', written)
+        self.assertIn('\nAtoms\n\n1 1 0.002 2500 .1 .2 .3\n2 1 0.004 2500 .4 .5 .6\n\nVelocities\n\n1 1 2 3 4 5 6\n2 7 8', written)
 
 
 class Measuring(Given):
