@@ -70,7 +70,7 @@ class Flow:
             settings[f'/stages/{stage}/until'] = until
         if not own:
             settings['/time_step'] = {'value': self.step, 'allow_unstable': True}
-        done = grit.run(self.program, self.file, self.folder / 'grit', threads, settings)
+        done = grit.run(self.program, self.file, self.folder / ('grit-own-step' if own else 'grit'), threads, settings)
         stages = done.facts['stages']
         states = [State(stage['bodies'], done.final(f'packing{when}/coordination_number'),
                         done.final(f'packing{when}/kinetic_energy', 'J'),
