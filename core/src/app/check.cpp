@@ -43,8 +43,13 @@ namespace grit {
 namespace {
 
 // Particle-steps/s of one thread: quick simulations reach 12 to 31 million, dense packings of 10 000 to 50 000 grains
-// 19 to 23 million on an AMD EPYC (Zen 4), see docs/evidence/estimates.md.
+// 19 to 23 million on an AMD EPYC (Zen 4), see docs/evidence/estimates.md. Without AVX-512 they are about 1.5 times
+// slower.
+#ifdef __AVX512F__
 constexpr double planning_speed = 18e6;
+#else
+constexpr double planning_speed = 12e6;
+#endif
 // A cloud has no contacts yet; in a dense packing the critical step of the same grains is about this fraction of the
 // cloud's.
 constexpr double dense_step_fraction = 0.6;
