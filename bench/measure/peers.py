@@ -60,7 +60,7 @@ class Timed(NamedTuple):
     others: float    # cores that other processes kept busy meanwhile
     of_critical: Optional[float] = None  # the time step over the critical one, if known
     reached: str = ''                    # fraction of the limit of the machine, as text
-    flow: Optional[dict] = None          # what tells one flow from another, and the time that it takes
+    flow: Optional[dict] = None          # figures to compare flows, and the time that it takes
 
 
 def molecular(code, scene, values, threads, folder):
