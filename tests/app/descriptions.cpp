@@ -657,8 +657,8 @@ TEST(Descriptions, CheckWarnsWhereNothingMovesTheBodies) {
     return outcome.out;
   };
   const std::string warning =
-      "\nwarning\n  /engines: nothing moves the bodies: they are at rest without contacts, no wall "
-      "moves, and there is neither gravity nor another force; add \"gravity\": ";
+      "\nwarning\n  /engines: nothing moves the bodies: they are at rest without contacts that push "
+      "them, no wall moves, and there is neither gravity nor another force; add \"gravity\": ";
   EXPECT_THAT(check({}), HasSubstr(warning));
   EXPECT_THAT(check({R"(/engines={"damping": {"type": "local-damping"}})"}), HasSubstr(warning));
   EXPECT_THAT(check({R"(/engines={"gravity": {"type": "gravity", "acceleration": [0, 0, 0]}})"}), HasSubstr(warning));
@@ -671,6 +671,14 @@ TEST(Descriptions, CheckWarnsWhereNothingMovesTheBodies) {
   EXPECT_THAT(check({R"(/walls/floor/motion={"servo": {"force": 1, "max_velocity": 1}})"}), none);
   EXPECT_THAT(check({R"(/stages/0/change={"walls": {"floor": {"point": [0, 0, 0.001]}}})"}), none);
   EXPECT_THAT(check({R"(/stages/0/growth={"rate": 1})"}), none);
+  // Glued grains that touch each other do not move the others.
+  const std::string glued = R"(/bodies/glued={"type": "sphere", "material": "sand", "source": {"type": "lattice",
+      "kind": "simple-cubic", "low": [0, 0, -0.008], "high": [0.02, 0.02, -0.004], "diameter": 0.002}})";
+  const std::string held = R"(/engines/glue={"type": "prescribed-motion", "groups": ["glued"]})";
+  EXPECT_THAT(check({glued, held}), HasSubstr(warning));
+  EXPECT_THAT(check({glued}), none) << "they may push each other apart";
+  EXPECT_THAT(check({glued, held, R"(/engines/gravity={"type": "gravity"})"}), none);
+  EXPECT_THAT(check({glued, held, R"(/stages/0/change={"engines": {"glue": null}})"}), none) << "released in a stage";
 }
 
 TEST(Descriptions, CheckWarnsWhereGravityIsForgotten) {

@@ -1,6 +1,9 @@
 #include "lint/unmoved_bodies.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <set>
+#include <string>
 
 #include "description/wall_ways.hpp"
 #include "lint/all_stages.hpp"
@@ -9,11 +12,29 @@
 namespace grit {
 namespace {
 
-/// Whether the bodies of the first instant are at rest and touch nothing.
-bool is_still(const World& world) {
+/// Groups whose motion is prescribed in all stages: contacts do not move them.
+std::set<std::string> held_groups(const Scene& described) {
+  std::set<std::string> held;
+  for (const auto& [name, group] : described.description->bodies)
+    if (always_by_engines(described, [&](const SceneDescription& now, const EngineMap& engines) {
+          return settings_of(now, engines, name).prescribed.has_value();
+        }))
+      held.insert(name);
+  return held;
+}
+
+/// Whether contacts of the first instant push bodies.
+bool has_pushing_contacts(const World& world, const std::set<std::string>& held) {
+  const auto is_held = [&](std::uint32_t body) { return held.contains(world.group_of(world.ids()[body])); };
+  return std::ranges::any_of(world.contacts(), [&](const Contact& contact) {
+    return !is_held(contact.a) || (!contact.with_wall && !is_held(contact.b));
+  });
+}
+
+/// Whether the bodies of the first instant are at rest.
+bool is_at_rest(const World& world) {
   const auto is_zero = [](const Row& row) { return xyz(row).isZero(0.0); };
-  return world.contacts().empty() && std::ranges::all_of(world.velocities(), is_zero) &&
-         std::ranges::all_of(world.spins(), is_zero);
+  return std::ranges::all_of(world.velocities(), is_zero) && std::ranges::all_of(world.spins(), is_zero);
 }
 
 /// Whether a group has a velocity, or may appear in a stage with a velocity of its own or with overlaps.
@@ -49,9 +70,9 @@ bool nothing_pushes(const Scene& described) {
 
 bool is_stream(const BodiesDescription& group) { return std::holds_alternative<StreamSource>(group.source.value()); }
 
-/// Whether all bodies are there from the start, and touch nothing.
-bool is_loose(const SceneDescription& start, const World& world) {
-  return !start.begin && world.contacts().empty() &&
+/// Whether all bodies are there from the start.
+bool is_complete(const SceneDescription& start) {
+  return !start.begin &&
          std::ranges::all_of(start.bodies, [](const auto& group) { return group.second.stage.empty(); });
 }
 
@@ -62,15 +83,17 @@ std::optional<UnusedSetting> unmoved_bodies(const Scene& described, const World&
   const auto moves = [](const auto& group) { return may_move(group.second); };
   const auto enters = [](const auto& group) { return is_stream(group.second); };
   const auto waits = [](const StageDescription& stage) { return waits_for_contacts(stage.until); };
-  const bool still = is_still(world) && std::ranges::none_of(start.bodies, moves);
+  const bool pushed = !world.contacts().empty() && has_pushing_contacts(world, held_groups(described));
+  const bool still = !pushed && is_at_rest(world) && std::ranges::none_of(start.bodies, moves);
   const bool flows = std::ranges::any_of(start.bodies, enters);
   // A velocity alone has a use: in collisions. It does not make bodies rest on each other.
-  const bool in_vain = flows || (is_loose(start, world) && std::ranges::any_of(start.stages, waits));
+  const bool in_vain = flows || (!pushed && is_complete(start) && std::ranges::any_of(start.stages, waits));
   if (!(still || in_vain) || !nothing_pushes(described)) return std::nullopt;
   if (still)
     return UnusedSetting{
         "/engines",
-        "nothing moves the bodies: they are at rest without contacts, no wall moves, and there is neither "
+        "nothing moves the bodies: they are at rest without contacts that push them, no wall moves, and there is "
+        "neither "
         "gravity nor another force; add \"gravity\": {\"type\": \"gravity\"}, a velocity or a moving wall"};
   return UnusedSetting{"/engines", std::string("no force acts on the bodies: there is neither gravity nor another "
                                                "force, and no wall moves; ") +
