@@ -26,6 +26,11 @@ endfunction()
 
 function(grit_plugin folder name)
   cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
+  set(kinds contacts geometry probes engines scenarios bodies)
+  if(NOT folder IN_LIST kinds)
+    list(JOIN kinds ", " allowed)
+    message(FATAL_ERROR "grit_plugin(${folder} ${name}): \"${folder}\" is no kind of plugin; allowed are ${allowed}")
+  endif()
   set(target ${folder}_${name})
   # A plugin is compiled against the SDK alone; only the link needs the library.
   add_library(${target}_objects OBJECT ${name}.cpp)
