@@ -11,16 +11,6 @@
 namespace grit {
 namespace {
 
-/// Slot of a pair that is no longer a candidate.
-constexpr std::uint32_t nowhere = ~0u;
-
-/// A pair that was in contact before the rebuild, sorted by its present lower body index.
-struct Former {
-  std::uint32_t other = 0;                       ///< higher body index
-  std::uint32_t from : 31 = 0, swapped : 1 = 0;  ///< its index before; whether a and b have been exchanged
-  std::uint32_t to = nowhere;                    ///< its index now
-};
-
 /// Number of rows to prefetch: about 100 ns, the latency of memory.
 constexpr std::uint32_t gather_ahead = 48;
 
@@ -46,8 +36,6 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
                            Team& team) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
-  // Free arrays that are rebuilt last, to reduce peak memory.
-  give_back(row_), give_back(inbox_);
   std::vector<std::uint32_t> now;
   if (order) {
     now = present_indices(*order, bodies_);
@@ -68,7 +56,8 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   };
   each_former([&](std::uint32_t lower, const Former&) { ++former_start[lower + 1]; });
   std::partial_sum(former_start.begin(), former_start.end(), former_start.begin());
-  std::vector<Former> formers(former_start.back());
+  formers_.resize(former_start.back());
+  const std::span<Former> formers(formers_);
   // While pairs are sorted in, the start of each lower body moves to that of the next.
   each_former([&](std::uint32_t lower, const Former& former) { formers[former_start[lower]++] = former; });
   std::move_backward(former_start.begin(), former_start.end() - 1, former_start.end());
@@ -152,7 +141,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   const auto number = [&](std::size_t slot, std::size_t f) -> double& {
     return state_[slot / block_size * field_count + f].lane[slot % block_size];
   };
-  LargeArray<double> field(field_count > 0 ? formers.size() : 0);
+  field_.resize(field_count > 0 ? formers.size() : 0);
   for (std::size_t f = 0; f < field_count + 1; ++f)
     team.each(chunk_count, [&](std::size_t chunk) {
       const std::size_t first = former_start[chunk * chunk_bodies];
@@ -161,16 +150,23 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
         for (const Blocks own : {chunks_[chunk].within, chunks_[chunk].across})
           for (std::size_t block = own.first; block < own.last; ++block) state_[block * field_count + f - 1] = {};
         for (std::size_t m = first; m < last; ++m)
-          if (formers[m].to != nowhere) number(formers[m].to, f - 1) = field[m];
+          if (formers[m].to != nowhere) number(formers[m].to, f - 1) = field_[m];
       }
       if (f == field_count) return;
       for (std::size_t m = first; m < last; ++m)
-        field[m] = number(formers[m].from, f) * (formers[m].swapped ? fields_[f].swap : 1.0);
+        field_[m] = number(formers[m].from, f) * (formers[m].swapped ? fields_[f].swap : 1.0);
     });
   state_.resize(lines);
-  give_back(field), give_back(formers);
 
-  row_.resize(slots - first_cross_);
+  // Rows of contacts are written before they are read. Those of pairs within the reach of a law but without a force are
+  // only read.
+  make_room(row_, slots - first_cross_);
+  team.each(chunk_count, [&](std::size_t chunk) {
+    const auto row = [&](std::uint32_t block) {
+      return row_.begin() + std::ptrdiff_t(block * block_size - first_cross_);
+    };
+    std::fill(row(chunks_[chunk].across.first), row(chunks_[chunk].across.near), ContactRow{});
+  });
   make_inbox(count);
   find_reached();
 }
@@ -193,7 +189,7 @@ void ContactTable::make_inbox(std::size_t bodies) {
     lay_out(next_far);
     chunks_[chunk].inbox_last = place;
   }
-  inbox_.resize(place);
+  make_room(inbox_, place);
   for (std::size_t c = first_cross_; c < b_.size(); ++c)
     if (b_[c] != pad) inbox_[next(c)++] = {static_cast<std::uint32_t>(c - first_cross_), b_[c]};
 }
@@ -322,7 +318,7 @@ std::vector<double> ContactTable::state(std::size_t c) const {
 
 std::size_t ContactTable::bytes() const {
   const auto bytes = [](const auto&... arrays) { return (... + (arrays.capacity() * sizeof(*arrays.data()))); };
-  return bytes(a_, b_, image_, touching_, acting_, asleep_until_, row_, inbox_, near_) +
+  return bytes(a_, b_, image_, touching_, acting_, asleep_until_, row_, inbox_, near_, formers_, field_) +
          state_.size() * sizeof(StateLine);
 }
 

@@ -163,6 +163,13 @@ class ContactTable {
     bool touching() const { return gap == 0; }
   };
   static_assert(chunk_bodies <= 256);
+  static constexpr std::uint32_t nowhere = ~0u;  // slot of a pair that is no longer a candidate
+  /// A pair that was in contact before the rebuild, sorted by its present lower body index.
+  struct Former {
+    std::uint32_t other = 0;                       ///< higher body index
+    std::uint32_t from : 31 = 0, swapped : 1 = 0;  ///< its index before; whether a and b have been exchanged
+    std::uint32_t to = nowhere;                    ///< its index now
+  };
   /// Upper bound of the approach of two bodies of a chunk, or of one of it and one of another, since the neighbour
   /// search, summed over steps [m].
   static double closing_within(std::size_t chunk, const Skins& skins) { return 2 * skins.walked(chunk); }
@@ -219,6 +226,9 @@ class ContactTable {
   std::vector<std::vector<std::uint32_t>> reached_;  // by chunk
   std::vector<std::vector<Found>> found_;            // by chunk
   std::vector<std::size_t> within_;                  // by chunk: number of candidates within it
+  // Used by rebuilds only. They are kept, as new pages would have to be cleared each time.
+  LargeArray<Former> formers_;
+  LargeArray<double> field_;
 };
 
 }  // namespace grit
