@@ -62,6 +62,21 @@ TEST_F(TimeStep, PrescribedAboveTheCriticalOneIsRefused) {
   EXPECT_EQ(set(), 1);
 }
 
+TEST_F(TimeStep, PrescribedIsComparedWithNewContactsUnlessItMayBeUnstable) {
+  state_.settings.time_step.value = 1e-9;
+  state_.settings.time_step.allow_unstable = true;
+  set();
+  const double before = control_.critical();
+  state_.bodies.velocity[0].w *= 4;  // one body is lighter, both have moved
+  passes_.chunks()[0].motion.largest_speed = 0.1 * radius;
+  state_.lists.advance(1, 0, passes_);
+  control_.follow(state_, view_, bounds_, passes_);
+  EXPECT_EQ(control_.critical(), before);
+  state_.settings.time_step.allow_unstable = false;
+  control_.follow(state_, view_, bounds_, passes_);
+  EXPECT_LT(control_.critical(), 0.9 * before);
+}
+
 TEST_F(TimeStep, IsStableWithTheRatesOfEngines) {
   class Damper final : public Engine {
    public:

@@ -75,9 +75,11 @@ void TimeStepControl::set(State& state, const World& world, DisplacementBounds& 
 void TimeStepControl::follow(State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
   const Settings& settings = state.settings;
   const double distance = renew_distance * state.statistics.mean_diameter;
+  // Nothing depends on contacts then; the critical step is evaluated at rebuilds only, for reports.
+  const bool unchecked = settings.time_step.value && settings.time_step.allow_unstable;
   if (requested_) set(state, world, bounds, passes);
   // Contacts form long before the next rebuild.
-  else if (critical_.due(state.lists.skins(), distance))
+  else if (!unchecked && critical_.due(state.lists.skins(), distance))
     choose(critical_.renew(near_contacts(state), distance, passes.team()), state, bounds);
   else if (!settings.time_step.value &&
            state.time.dt * bounds.displacement_rate() > max_displacement(settings.time_step, settings.guards))

@@ -21,7 +21,7 @@ class TimeStepControl {
   /// if nothing limits it.
   void set(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
   /// Before an evaluation without a rebuild: sets the time step if requested; otherwise updates it for new contacts
-  /// where bodies have moved far enough, and for speeds.
+  /// where bodies have moved far enough, and for speeds. A prescribed step that may be unstable needs no updates.
   void follow(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
   /// Whether the next evaluation may find stiffer springs.
   bool may_stiffen(const State& state, const DisplacementBounds& bounds) const {
