@@ -158,8 +158,8 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
     });
   state_.resize(lines);
 
-  // Rows of contacts are written before they are read. Those of pairs within the reach of a law but without a force are
-  // only read.
+  // Rows of contacts are written before they are read. Those of pairs that were near but do not interact are read
+  // without being written.
   make_room(row_, slots - first_cross_);
   team.each(chunk_count, [&](std::size_t chunk) {
     const auto row = [&](std::uint32_t block) {

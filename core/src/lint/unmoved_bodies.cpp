@@ -93,8 +93,7 @@ std::optional<UnusedSetting> unmoved_bodies(const Scene& described, const World&
     return UnusedSetting{
         "/engines",
         "nothing moves the bodies: they are at rest without contacts that push them, no wall moves, and there is "
-        "neither "
-        "gravity nor another force; add \"gravity\": {\"type\": \"gravity\"}, a velocity or a moving wall"};
+        "neither gravity nor another force; add \"gravity\": {\"type\": \"gravity\"}, a velocity or a moving wall"};
   return UnusedSetting{"/engines", std::string("no force acts on the bodies: there is neither gravity nor another "
                                                "force, and no wall moves; ") +
                                        (flows ? "those of a stream keep their velocity until they hit something"
