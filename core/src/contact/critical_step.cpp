@@ -1,10 +1,9 @@
 #include "contact/critical_step.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <numeric>
 
 namespace grit {
@@ -93,58 +92,72 @@ Demand demand_alone(const Bodies& bodies, std::size_t i, const ContactLaw& law, 
           .impact = 2 * first_contact * gives.along};
 }
 
-/// Demand of dashpots on a body [1/s], summed over its contacts: along·n n + across·(1 − n n) for its velocity,
-/// (slide − 1) across·(1 − n n) for its spin times √(I/m), and √(slide − 1) across·n that couples both. Each of the two
-/// bodies of a contact takes the sum of both.
-class Dashpots {
+/// A symmetric matrix: its diagonal, then xy, xz, yz.
+using Six = Eigen::Matrix<double, 6, 1>;
+Six square_of(const Vec3& n) {
+  return (Six() << n.x() * n.x(), n.y() * n.y(), n.z() * n.z(), n.x() * n.y(), n.x() * n.z(), n.y() * n.z()).finished();
+}
+
+/// Upper bound of the largest eigenvalue, at most 0.1 % of its deviation from the mean too large.
+double largest_eigenvalue(const Six& m) {
+  const double mean = m.head<3>().mean();
+  const Eigen::Array3d d = m.head<3>().array() - mean, off = m.tail<3>().array();
+  const double spread = d.square().sum() + 2 * off.square().sum();
+  if (!(spread > 0)) return mean;
+  // Deviations x from the mean are the roots of x³ − 3 p² x − 2 q. The largest is 2 p cos(φ/3) with cos φ = q/p³, a
+  // concave function of cos(φ/2), which its tangents at both ends bound. Newton's method stays above the largest root.
+  const double p = std::sqrt(spread / 6);
+  const double q =
+      0.5 * (d.prod() + 2 * off.prod() - d[0] * off[2] * off[2] - d[1] * off[1] * off[1] - d[2] * off[0] * off[0]);
+  const double half = std::sqrt(std::clamp(0.5 * (1 + q / (p * p * p)), 0.0, 1.0));
+  double x = 2 * p * std::min(0.5 + half / std::numbers::sqrt3, (5 + 4 * half) / 9);
+  // The derivative vanishes where the two largest roots are equal; the tangent is exact there.
+  if (x > 1.001 * p) x -= (x * (x * x - 3 * p * p) - 2 * q) / (3 * (x * x - p * p));
+  return mean + (1 + 1e-12) * x;  // above rounding error
+}
+
+/// Demand of springs [1/s²] or dashpots [1/s] on a body, summed over its contacts as tensors: along·n n + across·(1 − n
+/// n) for its velocity, twisting·n n + rolling·(1 − n n) for its spin times √(I/m), and coupling·n between both.
+class Tensors {
  public:
-  /// A symmetric matrix: its diagonal, then xy, xz, yz.
-  using Six = Eigen::Matrix<double, 6, 1>;
-  static Six square(const Vec3& n) {
-    return (Six() << n.x() * n.x(), n.y() * n.y(), n.z() * n.z(), n.x() * n.y(), n.x() * n.z(), n.y() * n.z())
-        .finished();
+  struct Contact {
+    double along, across, twisting, rolling, coupling;
+  };
+  /// `normal` points out of the body; `square`: square_of() it.
+  void add(const Contact& one, const Vec3& normal, const Six& square) {
+    line_ += (one.along - one.across) * square, across_ += one.across;
+    axis_ += (one.twisting - one.rolling) * square, rolling_ += one.rolling;
+    coupling_ += one.coupling * normal;
   }
-  /// One contact, whose normal points out of the body.
-  void add(const Rates& rates, const Vec3& normal, const Six& square) {
-    line_ += (rates.along - rates.across) * square;
-    plane_ += rates.across * square;
-    across_ += rates.across;
-    both_ += rates.across * normal;
+  /// Upper bound of the largest eigenvalue of the whole.
+  double largest() const {
+    return joined(across_ + largest_eigenvalue(line_), rolling_ + largest_eigenvalue(axis_), coupling_.squaredNorm());
   }
-  /// Upper bound of largest(), and far cheaper: the eigenvalues less their mean are the roots of x³ − 3 p² x = 2 q,
-  /// which are at most 2 p.
-  double at_most() const {
-    const auto bound = [](const Six& m) {
-      const double mean = m.head<3>().mean();
-      const double spread = (m.head<3>().array() - mean).square().sum() + 2 * m.tail<3>().squaredNorm();
-      return mean + 2 * std::sqrt(spread / 6);
-    };
-    return (1 + 1e-12) * joined(bound(velocity()), bound(spin()), both());  // above rounding error
-  }
-  /// An upper bound of the largest eigenvalue of the whole.
-  double largest() const { return joined(eigenvalue(velocity()), eigenvalue(spin()), both()); }
 
  private:
-  Six velocity() const {
-    Six m = line_;
-    m.head<3>().array() += across_;
-    return m;
-  }
-  Six spin() const {
-    Six m = -(slide - 1) * plane_;
-    m.head<3>().array() += (slide - 1) * across_;
-    return m;
-  }
-  double both() const { return (slide - 1) * both_.squaredNorm(); }
-  static double eigenvalue(const Six& m) {
-    const Mat3 full{{m[0], m[3], m[4]}, {m[3], m[1], m[5]}, {m[4], m[5], m[2]}};
-    return Eigen::SelfAdjointEigenSolver<Mat3>().computeDirect(full, Eigen::EigenvaluesOnly).eigenvalues()[2];
-  }
-
-  Six line_ = Six::Zero(), plane_ = Six::Zero();
-  double across_ = 0;
-  Vec3 both_ = Vec3::Zero();
+  Six line_ = Six::Zero(), axis_ = Six::Zero();
+  double across_ = 0, rolling_ = 0;
+  Vec3 coupling_ = Vec3::Zero();
 };
+
+/// Springs of a contact on a sphere.
+Tensors::Contact springs_on(const Stiffness& k, const Bodies& bodies, std::size_t i) {
+  const double radius = bodies.position[i].w, inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
+  return {.along = k.normal * inverse_mass,
+          .across = k.shear * inverse_mass,
+          .twisting = k.twisting * inverse_inertia,
+          .rolling = (k.shear * radius * radius + k.rolling) * inverse_inertia,
+          .coupling = k.shear * radius * std::sqrt(inverse_mass * inverse_inertia)};
+}
+
+/// Dashpots of a contact, as each of its two bodies takes the sum of both.
+Tensors::Contact dashpots_on(const Rates& rates) {
+  return {.along = rates.along,
+          .across = rates.across,
+          .twisting = 0,
+          .rolling = (slide - 1) * rates.across,
+          .coupling = std::sqrt(slide - 1) * rates.across};
+}
 
 PairSize size_at_wall(const Bodies& bodies, std::size_t i, double overlap) {
   PairSize size = size_of(bodies, i, i, overlap);
@@ -172,14 +185,14 @@ void each_group_of_facets(std::size_t chunk, const CriticalStep::Instant& at, do
 /// (π / duration)² of the impact of a body on facets that it hits at once [1/s²]; at most that of their springs along
 /// one direction.
 double impact_on(std::span<const SurfaceContact> facets, const WallSurface& wall, const CriticalStep::Instant& at) {
-  Mat3 springs = Mat3::Zero();
+  Six springs = Six::Zero();
   for (const SurfaceContact& contact : facets) {
     const std::uint32_t i = contact.body;
     const double stiffness =
         at.law.stiffness(size_at_wall(at.bodies, i, 0), at.bodies.material[i], wall.material).normal;
-    springs += stiffness * mobility(at.bodies, i, contact.normal).along * contact.normal * contact.normal.transpose();
+    springs += stiffness * mobility(at.bodies, i, contact.normal).along * square_of(contact.normal);
   }
-  return Eigen::SelfAdjointEigenSolver<Mat3>().computeDirect(springs, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  return largest_eigenvalue(springs);
 }
 
 }  // namespace
@@ -191,34 +204,41 @@ Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law) {
 }
 
 Demand CriticalStep::find(const Instant& at, Team& team) {
-  demand_.resize(at.bodies.count());
+  demand_.resize(at.bodies.count()), least_.resize(at.bodies.count());
   chunk_.resize(chunks_of(at.bodies.count()));
+  team.each(chunk_.size(), [&](std::size_t chunk) { evaluate_alone(chunk, at); });
   walls_walked_ = at.skins.walls_walked();
   std::vector<std::size_t> all(chunk_.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  return look(all, at, team);
+  return evaluate(all, at, team);
+}
+
+bool CriticalStep::due(std::size_t chunk, const Skins& skins, double way) const {
+  const Chunk& own = chunk_[chunk];
+  return skins.walked(chunk) > own.walked + own.patience * way;
 }
 
 bool CriticalStep::due(const Skins& skins, double way) const {
   if (skins.walls_walked() > walls_walked_ + way) return true;
   for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk)
-    if (skins.walked(chunk) > chunk_[chunk].walked + way) return true;
+    if (due(chunk, skins, way)) return true;
   return false;
 }
 
 Demand CriticalStep::renew(const Instant& at, double way, Team& team) {
-  if (at.skins.walls_walked() > walls_walked_ + way) return find(at, team);
+  const bool all = at.skins.walls_walked() > walls_walked_ + way;
+  if (all) walls_walked_ = at.skins.walls_walked();
   std::vector<std::size_t> chunks;
   for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk)
-    if (at.skins.walked(chunk) > chunk_[chunk].walked + way) chunks.push_back(chunk);
-  return look(chunks, at, team);
+    if (all || due(chunk, at.skins, way)) chunks.push_back(chunk);
+  return evaluate(chunks, at, team);
 }
 
-Demand CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team) {
+Demand CriticalStep::evaluate(const std::vector<std::size_t>& chunks, const Instant& at, Team& team) {
   const Clumps& clumps = at.bodies.clumps;
   if (!clumps.none())
-    for (auto* array : {&clumps_.springs, &clumps_.least, &clumps_.dashpots}) array->resize(at.bodies.count());
-  team.each(chunks.size(), [&](std::size_t k) { ask(chunks[k], at); });
+    for (auto* array : {&clumps_.springs, &clumps_.dashpots}) array->resize(at.bodies.count());
+  team.each(chunks.size(), [&](std::size_t k) { sum(chunks[k], at); });
   if (clumps.none()) {
     team.each(chunks.size(), [&](std::size_t k) { compare(chunks[k], at); });
   } else {
@@ -228,82 +248,106 @@ Demand CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant&
     team.each(chunk_.size(), [&](std::size_t chunk) { compare(chunk, at); });
   }
   Demand all;
-  for (const Chunk& chunk : chunk_) all = larger(all, larger(chunk.demand, chunk.together));
+  for (const Chunk& chunk : chunk_) all = larger(all, chunk.all());
+  // The bound of a chunk cannot matter before its critical step has become the shortest.
+  const double shortest = all.critical_time_step();
+  for (const std::size_t chunk : chunks) {
+    const double ratio = std::isfinite(shortest) ? chunk_[chunk].all().critical_time_step() / shortest : 1;
+    chunk_[chunk].patience = std::min(ratio * ratio, most_patience);
+  }
   return all;
 }
 
+/// Demands of bodies with one contact, with a body like themselves.
+void CriticalStep::evaluate_alone(std::size_t chunk, const Instant& at) {
+  Demand& all = chunk_[chunk].alone;
+  all = {};
+  const std::size_t first = chunk * chunk_bodies, last = std::min(at.bodies.count(), first + chunk_bodies);
+  for (std::size_t i = first; i < last; ++i) {
+    const Demand alone = demand_alone(at.bodies, i, at.law, at.overlap);
+    least_[i] = 0.5 * alone.spring;
+    all = larger(all, alone);
+  }
+}
+
 /// Demands of contacts on the bodies of a chunk.
-void CriticalStep::ask(std::size_t chunk, const Instant& at) {
+void CriticalStep::sum(std::size_t chunk, const Instant& at) {
   const Bodies& bodies = at.bodies;
   Chunk& own = chunk_[chunk];
   own.walked = at.skins.walked(chunk);
   own.near.clear();
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const bool clumps = !bodies.clumps.none();
-  std::array<double, chunk_bodies> springs{}, clump_dashpots{};
-  std::array<Dashpots, chunk_bodies> damped;
+  struct Sums {
+    double springs = 0, dashpots = 0;  // of clumps, and upper bounds for spheres
+    Tensors sphere_springs, sphere_dashpots;
+  };
+  std::array<Sums, chunk_bodies> sums;
+  bool damped = false;
+  const auto add = [&](std::uint32_t i, const Stiffness& k, const Vec3& normal, const Six& square) {
+    Sums& to = sums[i - first];
+    to.springs += demand(k, bodies, i, normal);
+    if (bodies.clumps.clump_of(i) == no_clump) to.sphere_springs.add(springs_on(k, bodies, i), normal, square);
+  };
   at.pairs.each_near(chunk, bodies, at.shifts, at.skins, at.near, [&](std::size_t c, double distance) {
+    own.near.push_back(static_cast<std::uint32_t>(c));
     const std::uint32_t a = at.pairs.a(c), b = at.pairs.b(c);
     const double overlap = std::max(bodies.position[a].w + bodies.position[b].w - distance, 0.0);
     const Stiffness k = at.law.stiffness(size_of(bodies, a, b, overlap), bodies.material[a], bodies.material[b]);
-    const bool damps = k.damping_ratio > 0 || k.shear_damping_ratio > 0;
-    const Vec3 normal = damps || clumps ? at.pairs.branch(c, bodies, at.shifts).normalized() : Vec3(Vec3::Zero());
+    const Vec3 normal = at.pairs.branch(c, bodies, at.shifts).normalized();
+    const Six square = square_of(normal);
+    const bool has_a = a >= first && a < last, has_b = b >= first && b < last;
+    if (has_a) add(a, k, normal, square);
+    if (has_b) add(b, k, -normal, square);
+    if (k.damping_ratio <= 0 && k.shear_damping_ratio <= 0) return;
+    damped = true;
     const double inverse_mass = bodies.velocity[a].w + bodies.velocity[b].w;
-    const bool of_clump = bodies.clumps.clump_of(a) != no_clump || bodies.clumps.clump_of(b) != no_clump;
-    const double at_arms =
-        damps && of_clump ? dashpots(k, mobility(bodies, a, normal), mobility(bodies, b, normal), inverse_mass) : 0;
-    const Rates dashpot = damps ? rates(k, inverse_mass) : Rates{};
-    const Dashpots::Six square = Dashpots::square(normal);
-    const auto ask = [&](std::uint32_t i, const Vec3& out) {
-      if (i < first || i >= last) return;
-      springs[i - first] += demand(k, bodies, i, normal);
-      if (of_clump) clump_dashpots[i - first] += at_arms;
-      else if (damps) damped[i - first].add(dashpot, out, square);
-    };
-    ask(a, normal), ask(b, -normal);
-    own.near.push_back(static_cast<std::uint32_t>(c));
+    if (bodies.clumps.clump_of(a) != no_clump || bodies.clumps.clump_of(b) != no_clump) {
+      const double at_arms = dashpots(k, mobility(bodies, a, normal), mobility(bodies, b, normal), inverse_mass);
+      if (has_a) sums[a - first].dashpots += at_arms;
+      if (has_b) sums[b - first].dashpots += at_arms;
+    } else {
+      const Tensors::Contact dashpot = dashpots_on(rates(k, inverse_mass));
+      if (has_a) sums[a - first].sphere_dashpots.add(dashpot, normal, square);
+      if (has_b) sums[b - first].sphere_dashpots.add(dashpot, -normal, square);
+    }
   });
   const double near = at.near + at.skins.reach();
-  const auto ask_wall = [&](const SurfaceContact& contact, const WallSurface& wall, double overlap) {
+  const auto add_wall = [&](const SurfaceContact& contact, const WallSurface& wall, double overlap) {
     const std::uint32_t a = contact.body;
     const Stiffness k = at.law.stiffness(size_at_wall(bodies, a, overlap), bodies.material[a], wall.material);
-    springs[a - first] += demand(k, bodies, a, contact.normal);
+    const Six square = square_of(contact.normal);
+    add(a, k, contact.normal, square);
+    if (k.damping_ratio <= 0 && k.shear_damping_ratio <= 0) return;
+    damped = true;
+    Sums& to = sums[a - first];
     if (bodies.clumps.clump_of(a) != no_clump)
-      clump_dashpots[a - first] += dashpots(k, mobility(bodies, a, contact.normal), {}, bodies.velocity[a].w);
-    else damped[a - first].add(rates(k, bodies.velocity[a].w), contact.normal, Dashpots::square(contact.normal));
+      to.dashpots += dashpots(k, mobility(bodies, a, contact.normal), {}, bodies.velocity[a].w);
+    else to.sphere_dashpots.add(dashpots_on(rates(k, bodies.velocity[a].w)), contact.normal, square);
   };
   at.walls.each_near(chunk, bodies, at.surfaces, near, [&](const SurfaceContact& contact, const WallSurface& wall) {
-    ask_wall(contact, wall, std::max(contact.overlap - near, 0.0));
+    add_wall(contact, wall, std::max(contact.overlap - near, 0.0));
   });
-  own.demand = {};
+  own.demand = own.alone;
   const double ahead = at.ahead + at.skins.reach();
   each_group_of_facets(chunk, at, ahead, [&](std::span<const SurfaceContact> facets, const WallSurface& wall) {
     const double impact = impact_on(facets, wall, at);
     if (impact <= demand_alone(bodies, facets.front().body, at.law, at.overlap).impact) return;
     own.demand.impact = std::max(own.demand.impact, impact);
     for (const SurfaceContact& contact : facets)
-      if (contact.overlap <= ahead - near) ask_wall(contact, wall, 0);
+      if (contact.overlap <= ahead - near) add_wall(contact, wall, 0);
   });
   for (std::size_t i = first; i < last; ++i) {
-    const Demand alone = demand_alone(bodies, i, at.law, at.overlap);
-    const double of_one = 0.5 * alone.spring;
-    demand_[i] = std::max(springs[i - first], of_one);
-    own.demand.spring = std::max({own.demand.spring, alone.spring, demand_[i]});
-    own.demand.impact = std::max(own.demand.impact, alone.impact);
-    own.demand.dashpot = std::max(own.demand.dashpot, alone.dashpot);
-    if (clumps)
-      clumps_.springs[i] = springs[i - first], clumps_.least[i] = of_one,
-      clumps_.dashpots[i] = clump_dashpots[i - first];
+    const Sums& of = sums[i - first];
+    if (clumps) clumps_.springs[i] = of.springs, clumps_.dashpots[i] = of.dashpots;
+    demand_[i] = least_[i];
+    if (of.springs > least_[i]) {
+      const bool sphere = bodies.clumps.clump_of(i) == no_clump;
+      demand_[i] = std::max(least_[i], sphere ? std::min(of.springs, of.sphere_springs.largest()) : of.springs);
+    }
+    own.demand.spring = std::max(own.demand.spring, demand_[i]);
+    if (damped) own.demand.dashpot = std::max(own.demand.dashpot, of.dashpots + of.sphere_dashpots.largest());
   }
-  // Starts with the body of the largest bound: then few others need an exact evaluation.
-  std::array<double, chunk_bodies> most{};
-  for (std::size_t i = first; i < last; ++i) most[i - first] = clump_dashpots[i - first] + damped[i - first].at_most();
-  const auto look = [&](std::size_t i) {
-    if (most[i] > own.demand.dashpot)
-      own.demand.dashpot = std::max(own.demand.dashpot, clump_dashpots[i] + damped[i].largest());
-  };
-  look(static_cast<std::size_t>(std::ranges::max_element(most) - most.begin()));
-  for (std::size_t i = 0; i < last - first; ++i) look(i);
 }
 
 void CriticalStep::gather(std::size_t c, const Clumps& clumps) {
@@ -311,7 +355,7 @@ void CriticalStep::gather(std::size_t c, const Clumps& clumps) {
   const std::span<const std::uint32_t> bodies(clumps.spheres.data() + clump.first, clump.last - clump.first);
   double springs = 0, dashpots = 0;
   for (const std::uint32_t i : bodies) springs += clumps_.springs[i], dashpots += clumps_.dashpots[i];
-  for (const std::uint32_t i : bodies) demand_[i] = std::max(clumps_.least[i], springs);
+  for (const std::uint32_t i : bodies) demand_[i] = std::max(least_[i], springs);
   clumps_.dashpot[c] = dashpots;
 }
 

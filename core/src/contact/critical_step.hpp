@@ -12,16 +12,17 @@ namespace grit {
 /// Demand of bodies before their first contacts: each has one with a body like itself.
 Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law);
 
-/// Upper bounds of the demands of contacts on bodies, with walls held. Mass and inertia of each body are distributed
-/// over its contacts in proportion to their demands. Then ω_max² is at most the maximum over the contacts of Q_a + Q_b,
-/// with Q the sum over a body's contacts of max(k_n/m, k_s (1/m + r²/I) + k_r/I, k_t/I): the element bound of Irons and
-/// Treharne, doi 10.1002/eqe.4290010107; Gershgorin's theorem gives the same without rotations. Dashpots are summed as
-/// tensors: the damping rate is at most the maximum over the bodies of |Σ c (1/m_a + 1/m_b) n n|. Pairs nearer than
-/// `near`, plus the reach of the law, count as contacts. Every body has at least one contact with a body of its own
-/// size with the overlap `overlap`; the shortest impact is that of this contact, as none with a larger body is shorter.
+/// Upper bounds of the demands of contacts on bodies, with walls held. Q is the largest eigenvalue of the springs of
+/// all contacts on one body, per mass and moment of inertia, with the other bodies held. The energy of a contact is at
+/// most 1 + Q_b/Q_a times that with b held, plus 1 + Q_a/Q_b times that with a held; so ω_max² is at most the maximum
+/// over the contacts of Q_a + Q_b. The same with Q the sum over a body's contacts of max(k_n/m, k_s (1/m + r²/I) +
+/// k_r/I, k_t/I) is the element bound of Irons and Treharne, doi 10.1002/eqe.4290010107; the smaller one is taken. The
+/// damping rate is at most the largest eigenvalue over the bodies of Σ c (1/m_a + 1/m_b) n n. Pairs nearer than `near`,
+/// plus the reach of the law, count as contacts. Every body has at least one contact with a body of its own size with
+/// the overlap `overlap`; the shortest impact is that of this contact, as none with a larger body is shorter.
 ///
 /// Contacts form and open where bodies move. A chunk is evaluated again, independently of others, when its bodies have
-/// moved far enough.
+/// moved far enough: the further, the longer its own critical step is than that of all.
 ///
 /// Contacts with several facets of a mesh may begin in one step, as in a ring of facets. If they stop a body sooner
 /// than one like itself would, all within `ahead` count, and their impact limits the step.
@@ -51,28 +52,34 @@ class CriticalStep {
   bool due(const Skins& skins, double way) const;
 
   void serialize(Archive& archive) {
-    archive(demand_, clumps_.springs, clumps_.least, clumps_.dashpots, clumps_.dashpot, chunk_, walls_walked_);
+    archive(demand_, least_, clumps_.springs, clumps_.dashpots, clumps_.dashpot, chunk_, walls_walked_);
   }
 
  private:
   struct Chunk {
-    Demand demand;                    ///< largest of single bodies
-    Demand together;                  ///< largest of its pairs, and of clumps with a body in it
-    double walked = 0;                ///< displacement bound at its last evaluation [m]
+    Demand alone;         ///< largest of bodies with one contact, with a body like themselves
+    Demand demand;        ///< largest of single bodies
+    Demand together;      ///< largest of its pairs, and of clumps with a body in it
+    double walked = 0;    ///< displacement bound at its last evaluation [m]
+    double patience = 1;  ///< displacement after which it is due, over that of the chunk with the shortest step
     std::vector<std::uint32_t> near;  ///< candidates that count as contacts
-    void serialize(Archive& archive) { archive(demand, together, walked, near); }
+    Demand all() const { return larger(demand, together); }
+    void serialize(Archive& archive) { archive(alone, demand, together, walked, patience, near); }
   };
-  Demand look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
-  void ask(std::size_t chunk, const Instant& at);
+  static constexpr double most_patience = 4;
+  bool due(std::size_t chunk, const Skins& skins, double way) const;
+  Demand evaluate(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
+  void evaluate_alone(std::size_t chunk, const Instant& at);
+  void sum(std::size_t chunk, const Instant& at);
   /// The demand of a clump is the sum over its bodies.
   void gather(std::size_t clump, const Clumps& clumps);
   void compare(std::size_t chunk, const Instant& at);
 
-  std::vector<double> demand_;  // by body, 1/s²
+  std::vector<double> demand_, least_;  // by body [1/s²]: of all contacts; of one with a body of its size
   struct OfClumps {
-    std::vector<double> springs, least;  // by body [1/s²]: of its contacts; of one with a body of its size
-    std::vector<double> dashpots;        // by body, 1/s: of contacts of which a clump is part
-    std::vector<double> dashpot;         // by clump
+    std::vector<double> springs;   // by body, 1/s²
+    std::vector<double> dashpots;  // by body, 1/s: of contacts of which a clump is part
+    std::vector<double> dashpot;   // by clump
   } clumps_;
   std::vector<Chunk> chunk_;
   double walls_walked_ = 0;
