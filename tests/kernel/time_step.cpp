@@ -131,6 +131,16 @@ TEST_F(TimeStep, WithoutBodiesIsThatOfTheGroups) {
   EXPECT_NEAR(control.critical(), with_bodies, 1e-12 * with_bodies);
 }
 
+TEST_F(TimeStep, StaysOnceAllBodiesHaveLeft) {
+  const double before = set();
+  state_.bodies = {};
+  search(state_, passes_);
+  set();
+  state_.lists.advance_walls(radius);
+  control_.follow(state_, view_, bounds_, passes_);
+  EXPECT_EQ(state_.time.dt, before);
+}
+
 TEST_F(TimeStep, OfLinearSpringsDoesNotFollowOverlaps) {
   EXPECT_FALSE(control_.stiffening().is_there());
   EXPECT_EQ(control_.stiffening().expected_overlap(), 0);

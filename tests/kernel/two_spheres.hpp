@@ -1,7 +1,8 @@
-// A state of two equal spheres along x.
+// States of a few equal spheres.
 #pragma once
 
 #include <limits>
+#include <vector>
 
 #include "kernel/passes.hpp"
 #include "kernel/state.hpp"
@@ -28,11 +29,11 @@ inline std::shared_ptr<ContactLaw> law(const std::string& name) {
   return law;
 }
 
-/// Spheres whose centres are `distance` [m] apart, about the origin.
-inline State two_spheres(double distance, const Cell& cell = box(), const std::string& law_name = "linear-frictional") {
+/// Spheres at rest.
+inline State spheres(const std::vector<Vec3>& centres, const Cell& cell = box(),
+                     const std::string& law_name = "linear-frictional") {
   State state(cell);
-  for (const double side : {-0.5, 0.5})
-    state.bodies.add({side * distance, 0, 0}, radius, sphere_mass(), sphere_inertia(), 0);
+  for (const Vec3& centre : centres) state.bodies.add(centre, radius, sphere_mass(), sphere_inertia(), 0);
   state.bodies.finish({});
   state.statistics.add(state.bodies, 0, 0);
   state.materials = {"sand"};
@@ -42,6 +43,22 @@ inline State two_spheres(double distance, const Cell& cell = box(), const std::s
   state.sum.resize(state.bodies.count() + 1);
   state.cell.update_images(0);
   return state;
+}
+
+/// Two spheres along x, whose centres are `distance` [m] apart, about the origin.
+inline State two_spheres(double distance, const Cell& cell = box(), const std::string& law_name = "linear-frictional") {
+  return spheres({{-0.5 * distance, 0, 0}, {0.5 * distance, 0, 0}}, cell, law_name);
+}
+
+/// A floor at z = 0.
+inline WallSurface floor_surface() {
+  const auto geometry = installed().make<Geometry>("plane");
+  Parameters parameters;
+  geometry->declare(parameters);
+  geometry->prepare();
+  WallSurface surface;
+  surface.geometry = geometry;
+  return surface;
 }
 
 /// Sets the velocity of a body [m/s].

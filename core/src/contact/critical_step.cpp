@@ -207,30 +207,28 @@ Demand CriticalStep::find(const Instant& at, Team& team) {
   demand_.resize(at.bodies.count()), least_.resize(at.bodies.count());
   chunk_.resize(chunks_of(at.bodies.count()));
   team.each(chunk_.size(), [&](std::size_t chunk) { evaluate_alone(chunk, at); });
-  walls_walked_ = at.skins.walls_walked();
   std::vector<std::size_t> all(chunk_.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return evaluate(all, at, team);
 }
 
-bool CriticalStep::due(std::size_t chunk, const Skins& skins, double way) const {
+bool CriticalStep::due(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const {
   const Chunk& own = chunk_[chunk];
-  return skins.walked(chunk) > own.walked + own.patience * way;
+  way *= own.patience;
+  if (skins.walked(chunk) > own.walked + way) return true;
+  return (own.at_walls || walls.has_candidates(chunk)) && skins.walls_walked() > own.walls_walked + way;
 }
 
-bool CriticalStep::due(const Skins& skins, double way) const {
-  if (skins.walls_walked() > walls_walked_ + way) return true;
+bool CriticalStep::due(const WallContacts& walls, const Skins& skins, double way) const {
   for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk)
-    if (due(chunk, skins, way)) return true;
+    if (due(chunk, walls, skins, way)) return true;
   return false;
 }
 
 Demand CriticalStep::renew(const Instant& at, double way, Team& team) {
-  const bool all = at.skins.walls_walked() > walls_walked_ + way;
-  if (all) walls_walked_ = at.skins.walls_walked();
   std::vector<std::size_t> chunks;
   for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk)
-    if (all || due(chunk, at.skins, way)) chunks.push_back(chunk);
+    if (due(chunk, at.walls, at.skins, way)) chunks.push_back(chunk);
   return evaluate(chunks, at, team);
 }
 
@@ -274,7 +272,8 @@ void CriticalStep::evaluate_alone(std::size_t chunk, const Instant& at) {
 void CriticalStep::sum(std::size_t chunk, const Instant& at) {
   const Bodies& bodies = at.bodies;
   Chunk& own = chunk_[chunk];
-  own.walked = at.skins.walked(chunk);
+  own.at_walls = at.walls.has_candidates(chunk);
+  own.walked = at.skins.walked(chunk), own.walls_walked = at.skins.walls_walked();
   own.near.clear();
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const bool clumps = !bodies.clumps.none();

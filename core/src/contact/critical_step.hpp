@@ -22,7 +22,8 @@ Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law);
 /// the overlap `overlap`; the shortest impact is that of this contact, as none with a larger body is shorter.
 ///
 /// Contacts form and open where bodies move. A chunk is evaluated again, independently of others, when its bodies have
-/// moved far enough: the further, the longer its own critical step is than that of all.
+/// moved far enough, or walls with bodies of it near them: the further, the longer its own critical step is than that
+/// of all.
 ///
 /// Contacts with several facets of a mesh may begin in one step, as in a ring of facets. If they stop a body sooner
 /// than one like itself would, all within `ahead` count, and their impact limits the step.
@@ -46,28 +47,33 @@ class CriticalStep {
   };
   /// Evaluates all chunks.
   Demand find(const Instant& at, Team& team);
-  /// Evaluates chunks in which a body has moved further than `way` [m] since their last evaluation.
+  /// Evaluates chunks in which a body has moved further than `way` [m] since their last evaluation, or near which a
+  /// wall has.
   Demand renew(const Instant& at, double way, Team& team);
   /// Whether there are such chunks.
-  bool due(const Skins& skins, double way) const;
+  bool due(const WallContacts& walls, const Skins& skins, double way) const;
 
   void serialize(Archive& archive) {
-    archive(demand_, least_, clumps_.springs, clumps_.dashpots, clumps_.dashpot, chunk_, walls_walked_);
+    archive(demand_, least_, clumps_.springs, clumps_.dashpots, clumps_.dashpot, chunk_);
   }
 
  private:
   struct Chunk {
-    Demand alone;         ///< largest of bodies with one contact, with a body like themselves
-    Demand demand;        ///< largest of single bodies
-    Demand together;      ///< largest of its pairs, and of clumps with a body in it
-    double walked = 0;    ///< displacement bound at its last evaluation [m]
-    double patience = 1;  ///< displacement after which it is due, over that of the chunk with the shortest step
+    Demand alone;             ///< largest of bodies with one contact, with a body like themselves
+    Demand demand;            ///< largest of single bodies
+    Demand together;          ///< largest of its pairs, and of clumps with a body in it
+    bool at_walls = false;    ///< whether it had candidates at walls, whose contacts may have opened since
+    double walked = 0;        ///< displacement bound at its last evaluation [m]
+    double walls_walked = 0;  ///< the same of walls
+    double patience = 1;      ///< displacement after which it is due, over that of the chunk with the shortest step
     std::vector<std::uint32_t> near;  ///< candidates that count as contacts
     Demand all() const { return larger(demand, together); }
-    void serialize(Archive& archive) { archive(alone, demand, together, walked, patience, near); }
+    void serialize(Archive& archive) {
+      archive(alone, demand, together, at_walls, walked, walls_walked, patience, near);
+    }
   };
   static constexpr double most_patience = 4;
-  bool due(std::size_t chunk, const Skins& skins, double way) const;
+  bool due(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const;
   Demand evaluate(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
   void evaluate_alone(std::size_t chunk, const Instant& at);
   void sum(std::size_t chunk, const Instant& at);
@@ -82,7 +88,6 @@ class CriticalStep {
     std::vector<double> dashpot;   // by clump
   } clumps_;
   std::vector<Chunk> chunk_;
-  double walls_walked_ = 0;
 };
 
 }  // namespace grit

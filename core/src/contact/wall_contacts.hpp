@@ -77,6 +77,8 @@ class WallContacts {
   void rebuild(const Bodies& bodies, std::span<const std::uint16_t> group, std::span<const WallSurface> walls,
                const Skins& skins, std::span<const StateField> fields,
                std::optional<std::span<const std::uint32_t>> order);
+  /// Whether any body of a chunk may come into contact with a wall before the next search.
+  bool has_candidates(std::size_t chunk) const { return !chunks_[chunk].candidate.empty(); }
   void set_fields(std::span<const StateField> fields);
   static constexpr std::uint32_t no_wall = ~0u;
   /// Walls get new indices, before the next rebuild(). Contacts of walls that become no_wall are removed.

@@ -64,8 +64,8 @@ void TimeStepControl::set(State& state, const World& world, DisplacementBounds& 
   engines_ = demand_of_engines(state, world);
   stiffening_.expect(state, bounds);
   // Without bodies the step is that of the groups that will appear.
-  const Demand contacts =
-      state.bodies.count() > 0 ? critical_.find(near_contacts(state), passes.team()) : state.settings.of_groups;
+  const Demand found = critical_.find(near_contacts(state), passes.team());
+  const Demand contacts = state.bodies.count() > 0 ? found : state.settings.of_groups;
   const double stable = stable_step(contacts, state);
   bounds.foresee(state, std::isfinite(stable) ? stable : state.time.dt, passes);
   choose(contacts, state, bounds);
@@ -79,7 +79,7 @@ void TimeStepControl::follow(State& state, const World& world, DisplacementBound
   const bool unchecked = settings.time_step.value && settings.time_step.allow_unstable;
   if (requested_) set(state, world, bounds, passes);
   // Contacts form long before the next rebuild.
-  else if (!unchecked && critical_.due(state.lists.skins(), distance))
+  else if (!unchecked && critical_.due(state.wall_contacts, state.lists.skins(), distance))
     choose(critical_.renew(near_contacts(state), distance, passes.team()), state, bounds);
   else if (!settings.time_step.value &&
            state.time.dt * bounds.displacement_rate() > max_displacement(settings.time_step, settings.guards))

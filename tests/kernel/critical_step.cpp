@@ -1,0 +1,86 @@
+// Where walls move, only chunks with bodies near them are evaluated again.
+#include "contact/critical_step.hpp"
+
+#include <gtest/gtest.h>
+
+#include "two_spheres.hpp"
+
+namespace grit::test::critical_step_tests {
+namespace {
+
+constexpr double way = 0.05 * radius;
+
+/// A chunk of bodies just above a floor, and another one far above it.
+std::vector<Vec3> near_and_far() {
+  std::vector<Vec3> centres;
+  for (const double height : {1.01 * radius, 100 * radius})
+    for (std::size_t i = 0; i < chunk_bodies; ++i) centres.emplace_back(3 * radius * static_cast<double>(i), 0, height);
+  return centres;
+}
+
+class CriticalStepAtWalls : public testing::Test {
+ protected:
+  CriticalStepAtWalls() {
+    state_.surfaces.push_back(floor_surface());
+    search(state_, passes_);
+  }
+  CriticalStep::Instant now() const {
+    return {.bodies = state_.bodies,
+            .pairs = state_.pairs,
+            .walls = state_.wall_contacts,
+            .surfaces = state_.surfaces,
+            .law = *state_.settings.law,
+            .shifts = state_.cell.images(),
+            .skins = state_.lists.skins(),
+            .near = way,
+            .ahead = 2 * way,
+            .overlap = 0};
+  }
+  double find() { return critical_.find(now(), passes_.team()).spring; }
+  double renew() { return critical_.renew(now(), way, passes_.team()).spring; }
+  bool due() const { return critical_.due(state_.wall_contacts, state_.lists.skins(), way); }
+  /// The floor moves far away, and candidates are found there.
+  void remove_floor() {
+    state_.surfaces[0].pose.shift.z() = -1;
+    state_.wall_contacts.rebuild(state_.bodies, state_.group, state_.surfaces, state_.lists.skins(),
+                                 state_.settings.fields, {});
+  }
+  void lighten(std::size_t body) { state_.bodies.velocity[body].w *= 4; }
+
+  State state_ = spheres(near_and_far());
+  Passes passes_{1};
+  CriticalStep critical_;
+};
+
+TEST_F(CriticalStepAtWalls, IsRenewedOnlyWhereBodiesAreNearThem) {
+  const double before = find();
+  EXPECT_FALSE(due());
+  lighten(chunk_bodies);
+  state_.lists.advance_walls(1.1 * way);
+  EXPECT_TRUE(due());
+  EXPECT_EQ(renew(), before) << "the chunk far from the floor is as it was";
+  EXPECT_FALSE(due());
+  lighten(0);
+  state_.lists.advance_walls(1.1 * way);
+  EXPECT_GT(renew(), 1.5 * before);
+}
+
+TEST_F(CriticalStepAtWalls, IsNotDueWhereNoBodyIsNearThem) {
+  remove_floor();
+  find();
+  state_.lists.advance_walls(1.1 * way);
+  EXPECT_FALSE(due());
+}
+
+TEST_F(CriticalStepAtWalls, IsRenewedOnceMoreWhereTheyHaveLeft) {
+  find();
+  remove_floor();
+  state_.lists.advance_walls(1.1 * way);
+  EXPECT_TRUE(due()) << "contacts with the floor may have opened";
+  renew();
+  state_.lists.advance_walls(1.1 * way);
+  EXPECT_FALSE(due());
+}
+
+}  // namespace
+}  // namespace grit::test::critical_step_tests
