@@ -82,5 +82,19 @@ TEST_F(CriticalStepAtWalls, IsRenewedOnceMoreWhereTheyHaveLeft) {
   EXPECT_FALSE(due());
 }
 
+TEST_F(CriticalStepAtWalls, IsRenewedWhereASearchHasFoundBodies) {
+  remove_floor();
+  find();
+  state_.surfaces[0].pose.shift.z() = 0;
+  state_.lists.advance_walls(0.1 * way);
+  EXPECT_FALSE(due());
+  state_.lists.begin_search_at_walls(state_.cell, state_.statistics, state_.time.dt, 0);
+  for (std::size_t chunk = 0; chunk < 2; ++chunk)
+    state_.wall_contacts.find_candidates(chunk, state_.bodies, state_.group, state_.surfaces, state_.lists.skins());
+  EXPECT_TRUE(due()) << "before the floor has moved as far";
+  renew();
+  EXPECT_FALSE(due());
+}
+
 }  // namespace
 }  // namespace grit::test::critical_step_tests

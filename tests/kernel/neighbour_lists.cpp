@@ -49,9 +49,28 @@ TEST_F(Lists, AreNotDueWhereABodyHasComeBack) {
   EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell)) << "its true distance is 0";
 }
 
-TEST_F(Lists, AreDueOnceAWallHasUsedUpItsSkin) {
+TEST_F(Lists, AreDueAtWallsAloneOnceAWallHasUsedUpItsSkin) {
+  EXPECT_FALSE(state_.lists.due_at_walls());
   state_.lists.advance_walls(1.1 * least_skin);
-  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell));
+  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell));
+  EXPECT_TRUE(state_.lists.due_at_walls());
+  state_.lists.begin_search_at_walls(state_.cell, state_.statistics, state_.time.dt, 2);
+  EXPECT_FALSE(state_.lists.due_at_walls());
+  EXPECT_NEAR(state_.lists.skins().of_walls(), 100 * 1e-6 * 2, 1e-15) << "for 100 steps";
+  EXPECT_DOUBLE_EQ(state_.lists.skins().walls_walked(), 1.1 * least_skin) << "since the rebuild";
+  EXPECT_EQ(state_.lists.searches_at_walls(), 1u);
+  EXPECT_EQ(state_.lists.rebuilds(), 1u);
+}
+
+TEST_F(Lists, SkinsAtWallsIncludeTheWayBack) {
+  passes_.chunks()[0].motion.largest_speed = 0.4 * least_skin;
+  state_.bodies.position[0].y += 0.4 * least_skin;
+  state_.lists.advance(1, 0, passes_);
+  EXPECT_DOUBLE_EQ(state_.lists.skins().at_walls(0), least_skin);
+  state_.lists.begin_search_at_walls(state_.cell, state_.statistics, state_.time.dt, 0);
+  EXPECT_DOUBLE_EQ(state_.lists.skins().at_walls(0), 1.4 * least_skin);
+  EXPECT_DOUBLE_EQ(state_.lists.skins().of_chunk(0), least_skin) << "for neighbours it stays";
+  EXPECT_DOUBLE_EQ(state_.lists.skins().furthest(), 0.4 * least_skin);
 }
 
 TEST_F(Lists, AreDueOnRequest) {

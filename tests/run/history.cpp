@@ -81,6 +81,27 @@ TEST(History, IsKeptWhenTwoBodiesSwapIndices) {
   EXPECT_GT(never_swapped, 50u);
 }
 
+TEST(History, IsKeptInASearchAtWalls) {
+  // A sphere is held, pressed against a floor that slides under it.
+  Description d = description("linear-rolling", {{"contact_modulus", 1e6}}, {{{0, 0, 0.99e-3}, 1e-3}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["walls"]["floor"]["motion"]["velocity"] = {0.5, 0.1, 0};
+  d["engines"]["hold"] = {{"type", "hold"}, {"rotation", "xyz"}, {"translation", "xyz"}};
+  d["time_step"]["value"] = 2e-6;
+  Trial at_walls(d), always(d);
+  for (int i = 0; i < 1000; ++i) {
+    at_walls.step();
+    always.kernel().request_rebuild();
+    always.step();
+    const Memories a = memories(at_walls), b = memories(always);
+    ASSERT_EQ(a.size(), 1u);
+    ASSERT_EQ(b.size(), 1u);
+    ASSERT_LT(apart(a, b), 1e-12) << i;
+  }
+  EXPECT_EQ(at_walls.kernel().state().lists.rebuilds(), 1u);
+  EXPECT_GE(at_walls.kernel().state().lists.searches_at_walls(), 5u);
+}
+
 TEST(History, SearchingAtEveryStepOrRarelyGivesTheSamePath) {
   Trial rarely(packing()), always(packing());
   std::size_t swapped = 0;

@@ -216,7 +216,9 @@ bool CriticalStep::due(std::size_t chunk, const WallContacts& walls, const Skins
   const Chunk& own = chunk_[chunk];
   way *= own.patience;
   if (skins.walked(chunk) > own.walked + way) return true;
-  return (own.at_walls || walls.has_candidates(chunk)) && skins.walls_walked() > own.walls_walked + way;
+  if (!own.at_walls && !walls.has_candidates(chunk)) return false;
+  // Candidates that a search at walls has just found may touch a wall before it has moved as far.
+  return skins.walls_walked() > own.walls_walked + way || skins.walls_walked_at_search() > own.walls_walked;
 }
 
 bool CriticalStep::due(const WallContacts& walls, const Skins& skins, double way) const {

@@ -48,7 +48,7 @@ class CriticalStep {
   /// Evaluates all chunks.
   Demand find(const Instant& at, Team& team);
   /// Evaluates chunks in which a body has moved further than `way` [m] since their last evaluation, or near which a
-  /// wall has.
+  /// wall has, or bodies have become candidates.
   Demand renew(const Instant& at, double way, Team& team);
   /// Whether there are such chunks.
   bool due(const WallContacts& walls, const Skins& skins, double way) const;

@@ -14,20 +14,32 @@ namespace grit {
 /// Each chunk has its own skin; walls share one. Two surfaces are candidates if their gap is less than the sum of both
 /// skins, and of the reach of a law that acts at a distance, so that no contact is missed while no displacement exceeds
 /// its skin. Fast bodies have wide skins and slow ones thin ones, so that all are used up at about the same time.
+///
+/// Where only walls have used up theirs, candidates at walls are found again without a search of pairs. Bodies then are
+/// where they have moved since the search. From there they may move back, and by their skin in the other direction:
+/// their skin at walls is the sum of both.
 class Skins {
  public:
   /// Before a search: sets the skins for the expected motion, `body` by chunk and `wall` [m], the largest reach of the
   /// law [m], and zero displacements.
   void reset(std::span<const double> body, double wall, double reach) {
     chunk_.assign(body.size(), {});
-    for (std::size_t c = 0; c < body.size(); ++c) chunk_[c].skin = body[c];
+    for (std::size_t c = 0; c < body.size(); ++c) chunk_[c].skin = chunk_[c].at_walls = body[c];
     largest_ = body.empty() ? 0 : *std::max_element(body.begin(), body.end());
     wall_ = {.skin = wall};
     reach_ = reach;
   }
+  /// Before a search at walls only: sets the skin of walls [m], with zero displacements of these, and those of bodies
+  /// at walls.
+  void reset_at_walls(double wall) {
+    for (Way& own : chunk_) own.at_walls = own.skin + own.gone;
+    wall_.skin = wall, wall_.gone = 0, wall_.walked_at_search = wall_.walked;
+  }
 
   double of_chunk(std::size_t chunk) const { return chunk_[chunk].skin; }
   double of_body(std::size_t body) const { return chunk_[body / chunk_bodies].skin; }
+  /// The skin of a chunk's bodies at walls [m], see Skins.
+  double at_walls(std::size_t chunk) const { return chunk_[chunk].at_walls; }
   double of_walls() const { return wall_.skin; }
   double largest() const { return largest_; }
   /// Largest distance of two surfaces at which the law acts [m]; 0 for most laws.
@@ -43,20 +55,33 @@ class Skins {
 
   /// Upper bound of the displacement of a chunk's bodies since the search [m].
   double gone(std::size_t chunk) const { return chunk_[chunk].gone; }
+  /// The largest of these [m].
+  double furthest() const {
+    double furthest = 0;
+    for (const Way& own : chunk_) furthest = std::max(furthest, own.gone);
+    return furthest;
+  }
+  /// Upper bound of the displacement of walls since the search, or the last one at walls [m].
   double walls_gone() const { return wall_.gone; }
-  /// The same along their path, summed over steps, so that it never decreases.
+  /// Those since the search along paths, summed over steps, so that they never decrease.
   double walked(std::size_t chunk) const { return chunk_[chunk].walked; }
   double walls_walked() const { return wall_.walked; }
+  /// walls_walked() at the last search at walls.
+  double walls_walked_at_search() const { return wall_.walked_at_search; }
 
   void serialize(Archive& archive) { archive(chunk_, wall_, largest_, reach_); }
 
  private:
   struct Way {
-    double skin = 0, gone = 0, walked = 0;
-    void serialize(Archive& archive) { archive(skin, gone, walked); }
+    double skin = 0, gone = 0, walked = 0, at_walls = 0;
+    void serialize(Archive& archive) { archive(skin, gone, walked, at_walls); }
+  };
+  struct WayOfWalls {
+    double skin = 0, gone = 0, walked = 0, walked_at_search = 0;
+    void serialize(Archive& archive) { archive(skin, gone, walked, walked_at_search); }
   };
   std::vector<Way> chunk_;
-  Way wall_;
+  WayOfWalls wall_;
   double largest_ = 0, reach_ = 0;
 };
 

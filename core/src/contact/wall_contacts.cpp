@@ -93,30 +93,33 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> 
   }
 
   chunks_.resize(chunks_of(count));
-  for (std::size_t c = 0; c < chunks_.size(); ++c) {
-    Chunk& chunk = chunks_[c];
-    chunk.candidate.clear();
-    chunk.candidate_start.assign(1, 0);
-    const std::size_t first = c * chunk_bodies, last = std::min(count, first + chunk_bodies);
-    const double skin = skins.of_chunk(c) + skins.of_walls() + skins.reach();
-    // Sphere that encloses all bodies of the chunk: most walls are far from most chunks.
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
-    for (std::size_t i = first; i < last; ++i)
-      low = low.cwiseMin(xyz(bodies.position[i])), high = high.cwiseMax(xyz(bodies.position[i]));
-    const Vec3 middle = 0.5 * (low + high);
-    double around = 0;
-    for (std::size_t i = first; i < last; ++i)
-      around = std::max(around, (xyz(bodies.position[i]) - middle).norm() + bodies.position[i].w + skin);
-    around *= 1 + 1e-12;
-    for (const WallSurface& wall : walls) {
-      const bool repeated = !wall.period.isZero(0.0);  // then bodies of a chunk may be at both of its ends
-      const bool close = repeated || !middle.allFinite() || wall.geometry->near(wall.pose, middle, around);
-      for (std::size_t i = first; close && i < last; ++i)
-        if (wall.acts_on(group, i) &&
-            wall.geometry->near(wall.pose, wall.within(xyz(bodies.position[i])), bodies.position[i].w + skin))
-          chunk.candidate.push_back(static_cast<std::uint32_t>(i));
-      chunk.candidate_start.push_back(static_cast<std::uint32_t>(chunk.candidate.size()));
-    }
+  for (std::size_t c = 0; c < chunks_.size(); ++c) find_candidates(c, bodies, group, walls, skins);
+}
+
+void WallContacts::find_candidates(std::size_t c, const Bodies& bodies, std::span<const std::uint16_t> group,
+                                   std::span<const WallSurface> walls, const Skins& skins) {
+  Chunk& chunk = chunks_[c];
+  chunk.candidate.clear();
+  chunk.candidate_start.assign(1, 0);
+  const std::size_t first = c * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
+  const double skin = skins.at_walls(c) + skins.of_walls() + skins.reach();
+  // Sphere that encloses all bodies of the chunk: most walls are far from most chunks.
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+  for (std::size_t i = first; i < last; ++i)
+    low = low.cwiseMin(xyz(bodies.position[i])), high = high.cwiseMax(xyz(bodies.position[i]));
+  const Vec3 middle = 0.5 * (low + high);
+  double around = 0;
+  for (std::size_t i = first; i < last; ++i)
+    around = std::max(around, (xyz(bodies.position[i]) - middle).norm() + bodies.position[i].w + skin);
+  around *= 1 + 1e-12;
+  for (const WallSurface& wall : walls) {
+    const bool repeated = !wall.period.isZero(0.0);  // then bodies of a chunk may be at both of its ends
+    const bool close = repeated || !middle.allFinite() || wall.geometry->near(wall.pose, middle, around);
+    for (std::size_t i = first; close && i < last; ++i)
+      if (wall.acts_on(group, i) &&
+          wall.geometry->near(wall.pose, wall.within(xyz(bodies.position[i])), bodies.position[i].w + skin))
+        chunk.candidate.push_back(static_cast<std::uint32_t>(i));
+    chunk.candidate_start.push_back(static_cast<std::uint32_t>(chunk.candidate.size()));
   }
 }
 

@@ -77,6 +77,9 @@ class WallContacts {
   void rebuild(const Bodies& bodies, std::span<const std::uint16_t> group, std::span<const WallSurface> walls,
                const Skins& skins, std::span<const StateField> fields,
                std::optional<std::span<const std::uint32_t>> order);
+  /// Finds the candidates of one chunk again, of the same bodies and walls. Contacts and their histories stay.
+  void find_candidates(std::size_t chunk, const Bodies& bodies, std::span<const std::uint16_t> group,
+                       std::span<const WallSurface> walls, const Skins& skins);
   /// Whether any body of a chunk may come into contact with a wall before the next search.
   bool has_candidates(std::size_t chunk) const { return !chunks_[chunk].candidate.empty(); }
   void set_fields(std::span<const StateField> fields);

@@ -65,15 +65,17 @@ void check_wall(const State& state, std::size_t wall, double travel) {
 
 void DisplacementBounds::foresee(const State& state, double dt, Passes& passes) {
   rate_ = rate_of_bodies(state, passes);
+  const double gone = state.lists.skins().furthest();
   for (std::size_t w = 0; w < state.walls.size(); ++w)
-    rate_ = std::max(rate_, approach_of(state, w, state.walls.expected_motion(w), 0, dt, passes).rate);
+    rate_ = std::max(rate_, approach_of(state, w, state.walls.expected_motion(w), gone, dt, passes).rate);
 }
 
 void DisplacementBounds::check_foreseen(const State& state, double dt, Passes& passes) {
   if (dt * rate_ <= state.settings.guards.travel) return;
   check_bodies(state, dt);
+  const double gone = state.lists.skins().furthest();
   for (std::size_t w = 0; w < state.walls.size(); ++w)
-    check_wall(state, w, dt * approach_of(state, w, state.walls.expected_motion(w), 0, dt, passes).rate);
+    check_wall(state, w, dt * approach_of(state, w, state.walls.expected_motion(w), gone, dt, passes).rate);
 }
 
 void DisplacementBounds::advance(State& state, Passes& passes) {

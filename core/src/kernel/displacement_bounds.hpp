@@ -21,7 +21,7 @@ class DisplacementBounds {
   /// Upper bound of the rate at which bodies and walls move, relative to a body's radius [1/s].
   double displacement_rate() const { return rate_; }
 
-  /// After a neighbour search.
+  /// After a neighbour search, or one at walls only.
   void rebuild(const State& state) { walls_.rebuild(state); }
   /// After a change of walls or of their motions.
   void reset_walls(std::size_t walls) { walls_.reset(walls); }

@@ -14,11 +14,22 @@ namespace {
 // best or within 3 % of it at 10 000 and 50 000 particles.
 constexpr double least_skin = 0.03, most_skin = 0.4, steps_of_skin = 100;
 
+/// The widths of skins [m]: for the motion in some steps, within bounds.
+struct SkinWidths {
+  double least, most;
+  SkinWidths(const DeformingCell& cell, const PopulationStatistics& statistics, double reach)
+      : least(least_skin * statistics.mean_diameter), most(most_skin * statistics.mean_diameter) {
+    for (int k = 0; k < 3; ++k)
+      if (cell.cell().periodic[k])
+        most = std::min(most, 0.25 * cell.lengths()[k] - statistics.largest_radius - 0.5 * reach);
+  }
+  double at(double speed, double dt) const { return std::max(least, std::min(most, steps_of_skin * dt * speed)); }
+};
+
 }  // namespace
 
 bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell) {
   if (requested_) return true;
-  if (skins_.walls_gone() > skins_.of_walls()) return true;
   const auto used_up = [&](std::size_t chunk) {
     return skins_.gone(chunk) + 0.5 * strain_travel_ > skins_.of_chunk(chunk);
   };
@@ -55,12 +66,8 @@ bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell) {
 
 void NeighbourLists::lay_skins(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
                                double dt, double wall_speed, Passes& passes) {
-  const double least = least_skin * statistics.mean_diameter, reach = largest_reach(reaches_);
-  double most = most_skin * statistics.mean_diameter;
-  for (int k = 0; k < 3; ++k)
-    if (cell.cell().periodic[k])
-      most = std::min(most, 0.25 * cell.lengths()[k] - statistics.largest_radius - 0.5 * reach);
-  const auto skin = [&](double speed) { return std::max(least, std::min(most, steps_of_skin * dt * speed)); };
+  const double reach = largest_reach(reaches_);
+  const SkinWidths widths(cell, statistics, reach);
   std::vector<double> skins(chunks_of(bodies.count()));
   passes.team().each(skins.size(), [&](std::size_t chunk) {
     const ChunkRange range(chunk, bodies.count());
@@ -69,9 +76,9 @@ void NeighbourLists::lay_skins(const Bodies& bodies, const DeformingCell& cell, 
       const Vec3 flow = cell.mean_flow(xyz(bodies.position[i]));
       fastest = std::max(fastest, (xyz(bodies.velocity[i]) - flow).squaredNorm());
     }
-    skins[chunk] = skin(std::sqrt(fastest));
+    skins[chunk] = widths.at(std::sqrt(fastest), dt);
   });
-  skins_.reset(skins, skin(wall_speed), reach);
+  skins_.reset(skins, widths.at(wall_speed, dt), reach);
   strain_travel_ = 0;
 }
 
@@ -89,14 +96,17 @@ void NeighbourLists::rebuild(const Bodies& bodies, const DeformingCell& cell, co
   requested_ = false;
 }
 
+void NeighbourLists::begin_search_at_walls(const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
+                                           double wall_speed) {
+  skins_.reset_at_walls(SkinWidths(cell, statistics, skins_.reach()).at(wall_speed, dt));
+  ++searches_at_walls_;
+}
+
 double NeighbourLists::advance(double dt, double strained, const Passes& passes) {
   strain_travel_ += strained;
-  double furthest = 0;
-  for (std::size_t chunk = 0; chunk < passes.chunks().size(); ++chunk) {
+  for (std::size_t chunk = 0; chunk < passes.chunks().size(); ++chunk)
     skins_.go(chunk, dt * passes.chunks()[chunk].motion.largest_speed, 0.5 * strained);
-    furthest = std::max(furthest, skins_.gone(chunk));
-  }
-  return furthest;
+  return skins_.furthest();
 }
 
 double NeighbourLists::shortest_period(const Bodies& bodies, const PopulationStatistics& statistics,
@@ -110,7 +120,7 @@ double NeighbourLists::shortest_period(const Bodies& bodies, const PopulationSta
 }
 
 void NeighbourLists::serialize(Archive& archive) {
-  archive(skins_, reference_, reference_cell_, reaches_, strain_travel_, rebuilds_, requested_);
+  archive(skins_, reference_, reference_cell_, reaches_, strain_travel_, rebuilds_, searches_at_walls_, requested_);
 }
 
 }  // namespace grit

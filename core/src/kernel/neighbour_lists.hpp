@@ -20,21 +20,28 @@ class NeighbourLists {
   const Skins& skins() const { return skins_; }
   const NeighbourSearch& search() const { return search_; }
   std::uint64_t rebuilds() const { return rebuilds_; }
+  /// Number of searches at walls only, between rebuilds.
+  std::uint64_t searches_at_walls() const { return searches_at_walls_; }
   /// Upper bound of the approach of two surfaces by strain of the cell and by growth since the last rebuild [m].
   double strain_travel() const { return strain_travel_; }
 
   void request_rebuild() { requested_ = true; }
   /// The same if reaches of the law have changed since the last rebuild.
   void expect_reaches(const std::vector<double>& reaches) { requested_ = requested_ || reaches != reaches_; }
-  /// Whether a body or wall may have used up its skin. If the sum of maximum speeds does not exclude it, displacements
-  /// since the last rebuild are measured.
+  /// Whether a body may have used up its skin. If the sum of maximum speeds does not exclude it, displacements since
+  /// the last rebuild are measured.
   bool due(const Bodies& bodies, const DeformingCell& cell);
+  /// Whether a wall may have used up its skin; then only candidates at walls are found again.
+  bool due_at_walls() const { return skins_.walls_gone() > skins_.of_walls(); }
   /// Whether this rebuild should also sort bodies in space.
   bool sorts() const { return rebuilds_ % sort_every == 0; }
   /// Searches neighbours. `reaches`: those of the law for the largest radius [m]. Skins follow from speeds only, so
   /// that a run is identical on every machine.
   void rebuild(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
                std::vector<double> reaches, double dt, double wall_speed, Passes& passes);
+  /// Before candidates at walls are found again, without a rebuild: sets the skins for this. Arguments as in rebuild().
+  void begin_search_at_walls(const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
+                             double wall_speed);
   /// After a step of `dt` [s]; `strained`: upper bound of the approach of two surfaces by strain and growth [m].
   /// Returns an upper bound of the displacement of bodies since the last rebuild [m].
   double advance(double dt, double strained, const Passes& passes);
@@ -59,7 +66,7 @@ class NeighbourLists {
   Cell reference_cell_;
   std::vector<double> reaches_;  // of the law at the last rebuild
   double strain_travel_ = 0;
-  std::uint64_t rebuilds_ = 0;
+  std::uint64_t rebuilds_ = 0, searches_at_walls_ = 0;
   bool requested_ = true;
 };
 

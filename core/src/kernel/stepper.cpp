@@ -99,14 +99,27 @@ void Stepper::rebuild() {
   time_step_.set(state_, view_, bounds_, passes_);
 }
 
+void Stepper::search_at_walls() {
+  repeat_walls(state_);
+  state_.lists.begin_search_at_walls(state_.cell, state_.statistics, state_.time.dt, bounds_.wall_speed());
+  passes_.team().each(passes_.chunks().size(), [&](std::size_t chunk) {
+    state_.wall_contacts.find_candidates(chunk, state_.bodies, state_.group, state_.surfaces, state_.lists.skins());
+  });
+  bounds_.rebuild(state_);
+}
+
 bool Stepper::prepare() {
   view_.invalidate();
   state_.cell.update_images(state_.time.previous_dt);
   update_surfaces();
   {
     const Stopwatch watch(passes_.time_of(StepPhase::search));
-    if (state_.lists.due(state_.bodies, state_.cell)) rebuild();
-    else time_step_.follow(state_, view_, bounds_, passes_);
+    if (state_.lists.due(state_.bodies, state_.cell)) {
+      rebuild();
+    } else {
+      if (state_.lists.due_at_walls()) search_at_walls();
+      time_step_.follow(state_, view_, bounds_, passes_);
+    }
   }
   // Contact history advances once per step, even if forces are evaluated again at the start of a stage.
   const bool again = forces_step_ == state_.time.step;

@@ -48,6 +48,8 @@ class Stepper {
   /// Operations before contacts. Returns whether this instant has been evaluated before.
   bool prepare();
   void rebuild();
+  /// Finds candidates at walls again; neighbour lists stay.
+  void search_at_walls();
   /// Marks the bodies that engines remove.
   void mark_removed(std::vector<bool>& leaves) const;
   void update_surfaces();

@@ -40,12 +40,13 @@ AxialRange swept(const State& state, std::size_t wall, const Vec3& axis) {
   return range;
 }
 
-/// Largest distance from the axis at which the wall may touch a body before the next search [m].
-double arm(const State& state, std::size_t wall, const Vec3& axis) {
+/// Largest distance from the axis at which the wall may touch a body before candidates are found again, if bodies were
+/// at rest [m]. `gone`: as in WallSpeeds::speed().
+double arm(const State& state, std::size_t wall, const Vec3& axis, double gone) {
   const AxialRange range = swept(state, wall, axis);
   const Skins& skins = state.lists.skins();
-  // Skins are exceeded by less than one step.
-  const double moves = skins.largest() + skins.of_walls() + skins.reach() +
+  // Bodies may move back, and by their skins in the other direction. Skins are exceeded by less than one step.
+  const double moves = skins.largest() + gone + skins.of_walls() + skins.reach() +
                        2 * state.settings.guards.travel * state.statistics.largest_radius;
   double longest = 0;
   for (std::size_t i = 0; i < state.bodies.count(); ++i) {
@@ -62,10 +63,11 @@ double arm(const State& state, std::size_t wall, const Vec3& axis) {
 }  // namespace
 
 void WallSpeeds::rebuild(const State& state) {
+  const double gone = state.lists.skins().furthest();
   for (std::size_t w = 0; w < state.walls.size(); ++w) {
     arms_[w] = {};  // bodies have moved
     const Vec3& spin = state.walls.states()[w].spin;
-    if (!spin.isZero(0.0)) turning(state, w, spin, 0);
+    if (!spin.isZero(0.0)) turning(state, w, spin, gone);
   }
 }
 
@@ -74,7 +76,8 @@ double WallSpeeds::turning(const State& state, std::size_t wall, const Vec3& spi
   const Vec3 axis = spin.normalized();
   Arm& known = arms_[wall];
   constexpr double rounding = 1e-12;
-  if (known.axis.cross(axis).norm() > rounding || known.axis.isZero(0.0)) known = {axis, arm(state, wall, axis)};
+  if (known.axis.cross(axis).norm() > rounding || known.axis.isZero(0.0))
+    known = {axis, arm(state, wall, axis, gone) + gone};
   return spin.norm() * (known.length + gone + state.lists.strain_travel() + state.lists.skins().walls_gone());
 }
 
@@ -102,7 +105,7 @@ Approach approach(const State& state, std::size_t wall, const WallMotion& motion
   }
   std::vector<Approach> found(chunks_of(state.bodies.count()));
   team.each(found.size(), [&](std::size_t chunk) {
-    const double near = skins.of_chunk(chunk) + skins.of_walls();
+    const double near = skins.at_walls(chunk) + skins.of_walls();
     std::map<std::uint32_t, std::array<double, parts.size()>> deepest;  // by body [m]
     for (std::size_t k = 0; k < parts.size(); ++k)
       state.wall_contacts.each_near(chunk, state.bodies, surfaces[k], wall, near, [&](const SurfaceContact& contact) {

@@ -10,14 +10,15 @@
 namespace grit {
 
 /// Upper bounds of the speeds of walls' surfaces near bodies. A wall that spins moves faster further from its axis, so
-/// the bounds use the distances of the axis from the bodies that the wall may reach before the next neighbour search.
+/// the bounds use the distances of the axis from the bodies that the wall may reach before candidates at walls are
+/// found again.
 class WallSpeeds {
  public:
   /// After a change of walls or of their motions.
   void reset(std::size_t walls) { arms_.assign(walls, {}); }
-  /// After a neighbour search.
+  /// After a neighbour search, or one at walls only.
   void rebuild(const State& state);
-  /// Speed in any direction [m/s]. `gone`: upper bound of the displacement of bodies since the search [m].
+  /// Speed in any direction [m/s]. `gone`: upper bound of the displacement of bodies since the neighbour search [m].
   double speed(const State& state, std::size_t wall, const WallMotion& motion, double gone);
   /// Speed along the normal of the surface [m/s]: a flat wall may move in its own plane at any speed.
   double normal_speed(const State& state, std::size_t wall, const WallMotion& motion, double gone);
@@ -27,7 +28,7 @@ class WallSpeeds {
  private:
   struct Arm {
     Vec3 axis = Vec3::Zero();  // direction for which it was found; zero: not found
-    double length = 0;         // m
+    double length = 0;         // from the axis to the furthest place where one of these bodies was since the search [m]
 
     void serialize(Archive& archive) { archive(axis, length); }
   };
@@ -36,7 +37,7 @@ class WallSpeeds {
   std::vector<Arm> arms_;  // by wall
 };
 
-/// The fastest approach of a wall's surface to a body that it may reach before the next neighbour search.
+/// The fastest approach of a wall's surface to a body that it may reach before candidates at walls are found again.
 struct Approach {
   double speed = 0;  ///< m/s
   double rate = 0;   ///< largest of speed over the body's radius [1/s]

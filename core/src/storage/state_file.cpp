@@ -13,7 +13,7 @@ namespace grit {
 namespace {
 
 /// Version of the layout of the file and of the state.
-constexpr std::uint64_t format = 3;
+constexpr std::uint64_t format = 4;
 
 }  // namespace
 
