@@ -134,7 +134,7 @@ TEST_F(TimeStep, WithoutBodiesIsThatOfTheGroups) {
 TEST_F(TimeStep, StaysOnceAllBodiesHaveLeft) {
   const double before = set();
   state_.bodies = {};
-  search(state_, passes_);
+  search(state_, passes_, std::span<const std::uint32_t>());
   set();
   state_.lists.advance_walls(radius);
   control_.follow(state_, view_, bounds_, passes_);

@@ -1,7 +1,10 @@
 // States of a few equal spheres.
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "kernel/passes.hpp"
@@ -67,14 +70,14 @@ inline void set_velocity(State& state, std::size_t body, const Vec3& v) {
   row = {v.x(), v.y(), v.z(), row.w};
 }
 
-/// Updates neighbour lists and contacts.
-inline void search(State& state, Passes& passes) {
+/// Updates neighbour lists and contacts. `order`: as in ContactTable::rebuild().
+inline void search(State& state, Passes& passes, std::optional<std::span<const std::uint32_t>> order = {}) {
   passes.resize(state.bodies.count());
   state.lists.rebuild(state.bodies, state.cell, state.statistics, state.reaches(), state.time.dt, 0, passes);
-  state.pairs.rebuild(state.bodies, state.lists.search(), state.cell.periodic(), state.settings.fields, {},
+  state.pairs.rebuild(state.bodies, state.lists.search(), state.cell.periodic(), state.settings.fields, order,
                       passes.team());
   state.wall_contacts.rebuild(state.bodies, state.group, state.surfaces, state.lists.skins(), state.settings.fields,
-                              {});
+                              order);
 }
 
 /// Evaluates the contacts of the only chunk.

@@ -12,7 +12,7 @@
 namespace grit::test::critical_step_tests {
 namespace {
 
-constexpr double radius = 5e-4;
+constexpr double radius = 5e-4, shear = 0.3;  // over the normal stiffness
 
 /// Grains at rest without contact, and one in their middle that six others approach.
 std::vector<Grain> ambush(double speed) {
@@ -41,7 +41,9 @@ std::vector<Grain> as_they_are(const World& world) {
 }
 
 Description description_of(const std::vector<Grain>& grains) {
-  Description d = description("linear-rolling", {{"contact_modulus", 1e8}}, grains);
+  Description d =
+      description("linear-rolling",
+                  {{"contact_modulus", 1e8}, {"shear_to_normal_stiffness", shear}, {"rolling_stiffness", 0}}, grains);
   d["guards"] = {{"overlap", 1}, {"travel", 0.5}, {"energy", 10}};
   d["time_step"]["value"] = 2e-7;
   return d;
@@ -54,13 +56,43 @@ TEST(CriticalStep, FollowsContactsBetweenSearches) {
   while (t.kernel().state().pairs.touching_count() < 6) t.step();
   t.step(25);
   ASSERT_EQ(t.kernel().state().pairs.touching_count(), 6u);
-  EXPECT_LT(critical(), 0.6 * alone) << "a body with six contacts, another with one: √(2/7)";
+  // Along each axis the one in the middle has two contacts along the normal, and four in shear; the others have one.
+  const double one = 3.5 * shear, six = 2 + 4 * shear;
+  EXPECT_NEAR(critical() / alone, std::sqrt(2 * one / (six + one)), 1e-6);
   const std::uint64_t searches = t.kernel().state().lists.rebuilds();
   EXPECT_DOUBLE_EQ(critical(), Trial(description_of(as_they_are(t.world()))).kernel().critical_time_step());
   while (t.kernel().state().pairs.touching_count() > 0) t.step();
   EXPECT_EQ(t.kernel().state().lists.rebuilds(), searches) << "without a search";
   t.step(25);
   EXPECT_DOUBLE_EQ(critical(), alone);
+}
+
+/// A column of soft grains on a floor, or what has become of it.
+Description column(const std::vector<Grain>& grains) {
+  Description d = description(
+      "linear-frictional",
+      {{"density", 2600}, {"contact_modulus", 1e6}, {"friction_angle", "25 deg"}, {"restitution", 0.5}}, grains);
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {0, 0, -9.81}}};
+  return d;
+}
+
+TEST(CriticalStep, LagsInAColumnThatCollapsesByLessThanTheSafety) {
+  std::vector<Grain> grains = jumble({6, 6, 16}, 1e-3, 0, 3);
+  for (Grain& grain : grains) grain.radius *= 0.9;  // apart
+  Trial t(column(grains));
+  double most = 0;
+  int samples = 0, late = 0;
+  for (; t.world().time() < 0.1; ++samples) {
+    t.step(20);
+    std::vector<Grain> now;
+    for (std::size_t i = 0; i < t.world().ids().size(); ++i)
+      now.push_back({xyz(t.world().positions()[i]), t.world().positions()[i].w});
+    const double lag = t.kernel().critical_time_step() / Trial(column(now)).kernel().critical_time_step();
+    most = std::max(most, lag), late += lag > 1.05;
+  }
+  EXPECT_LT(most, 1.25) << "a safety of 0.8 covers it";
+  RecordProperty("most", std::to_string(most)), RecordProperty("late", late), RecordProperty("samples", samples);
 }
 
 /// A funnel of this many triangles, whose slope is 45° at its edges; its tip is at 0.

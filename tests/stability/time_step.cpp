@@ -86,8 +86,9 @@ TEST(TimeStep, LatticeStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
       const Description d = lattice(law, e);
       expect_limit(d, limit);
       map_step("lattice, " + law, e, d, limit);
-      EXPECT_LE(critical(d), limit);
-      EXPECT_GE(critical(d), 0.5 * limit) << "not much shorter than necessary";
+      EXPECT_LE(critical(d), (1 + 1e-12) * limit);
+      // Springs in rolling, which this mode does not load, count too.
+      EXPECT_GE(critical(d), (law == "linear-rolling" ? 0.75 : 0.99) * limit) << "not much shorter than necessary";
     }
 }
 
@@ -101,8 +102,8 @@ TEST(TimeStep, LatticeDampedInShearStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
     const double limit = limit_of((4 + 8 * shear_ratio) * stiffness / mass, (4 * along + 8 * across) / mass);
     expect_limit(d, limit);
     map_step("lattice, damped in shear", e, d, limit);
-    EXPECT_LE(critical(d), limit);
-    EXPECT_GE(critical(d), 0.5 * limit) << "not much shorter than necessary";
+    EXPECT_LE(critical(d), (1 + 1e-12) * limit);
+    EXPECT_GE(critical(d), 0.9 * limit) << "not much shorter than necessary";
   }
 }
 
@@ -160,7 +161,7 @@ TEST(TimeStep, DensePackingStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
     const Description d = packed(friction);
     const double said = critical(d), found = found_limit(d, 1.2 * said);
     EXPECT_LE(said, found);
-    EXPECT_GE(said, 0.5 * found) << "not much shorter than necessary";
+    EXPECT_GE(said, 0.8 * found) << "not much shorter than necessary";
     EXPECT_LT(growth(d, 0.99 * said, 4000), 1e3);
   }
 }
@@ -246,7 +247,7 @@ void expect_close_bound(const std::string& name, Trial& t, double side, int samp
     least = std::min(least, ratio), most = std::max(most, ratio);
   }
   EXPECT_LE(most, 1) << name;
-  EXPECT_GE(least, 0.7) << name << ": not much shorter than necessary";
+  EXPECT_GE(least, 0.8) << name << ": not much shorter than necessary";
   figure("critical step over that of all modes, least, " + name, least);
   figure("critical step over that of all modes, most, " + name, most);
 }

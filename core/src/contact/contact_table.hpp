@@ -87,32 +87,50 @@ class ContactTable {
         use(c, std::span<const double>(history));
       });
   }
+  /// Upper bounds of the approach of a body of a chunk and one of another, since the neighbour search, summed over
+  /// steps [m]; by chunk.
+  std::vector<double> closings_across(const Skins& skins) const {
+    std::vector<double> closings(chunks_.size());
+    for (std::size_t chunk = 0; chunk < closings.size(); ++chunk) closings[chunk] = closing_across(chunk, skins);
+    return closings;
+  }
   /// Calls use(candidate, distance) for pairs of a chunk's bodies, with each other and with others, whose surfaces
-  /// touch or are nearer than `near` [m] plus the reach of the law.
+  /// touch or are nearer than `near` [m] plus the reach of the law. `closings`: closings_across().
   template <class Use>
-  void each_near(std::size_t chunk, const Bodies& bodies, const ImageShift* shifts, const Skins& skins, double near,
-                 Use use) const {
-    const auto take = [&](std::size_t c) {
-      const double reach = bodies.position[a_[c]].w + bodies.position[b_[c]].w + (near + skins.reach());
-      const double square = branch(c, bodies, shifts).squaredNorm();
-      if (square < reach * reach) use(c, std::sqrt(square));
+  void each_near(std::size_t chunk, const Bodies& bodies, const ImageShift* shifts, const Skins& skins,
+                 std::span<const double> closings, double near, Use use) const {
+    // Without branches, as few processors predict which pairs are near.
+    const double gap = near + skins.reach();
+    const auto square = [&](std::size_t c) { return branch(c, bodies, shifts).squaredNorm(); };
+    const auto limit = [&](std::size_t c) {
+      const double distance = bodies.position[a_[c]].w + bodies.position[b_[c]].w + gap;
+      return distance * distance;
     };
     const auto asleep = [&](std::size_t block, double closing) {
       return touching_[block] == 0 && closing + near < asleep_until_[block];
     };
     const auto take_all = [&](Blocks blocks, double closing) {
-      for (std::size_t block = blocks.first; block < blocks.last; ++block)
-        if (!asleep(block, closing))
-          for (std::size_t k = 0; k < block_size; ++k) take(block * block_size + k);
+      for (std::size_t block = blocks.first; block < blocks.last; ++block) {
+        if (asleep(block, closing)) continue;
+        const std::size_t first = block * block_size;
+        double squares[block_size];
+        std::uint32_t mask = 0;
+        for (std::size_t k = 0; k < block_size; ++k) {
+          squares[k] = square(first + k);
+          mask |= static_cast<std::uint32_t>(squares[k] < limit(first + k)) << k;
+        }
+        for (; mask != 0; mask &= mask - 1) {
+          const auto k = static_cast<std::size_t>(std::countr_zero(mask));
+          use(first + k, std::sqrt(squares[k]));
+        }
+      }
     };
     const Chunk& own = chunks_[chunk];
-    take_all(own.within, closing_within(chunk, skins)), take_all(own.across, closing_across(chunk, skins));
-    std::size_t from = chunks_.size();
-    double closing = 0;
+    take_all(own.within, closing_within(chunk, skins)), take_all(own.across, closings[chunk]);
     for (std::uint32_t e = own.inbox_first; e < own.inbox_last; ++e) {
-      const std::size_t c = first_cross_ + inbox_[e].row, other = a_[c] / chunk_bodies;
-      if (other != from) from = other, closing = closing_across(other, skins);
-      if (!asleep(c / block_size, closing)) take(c);
+      const std::size_t c = first_cross_ + inbox_[e].row;
+      if (asleep(c / block_size, closings[a_[c] / chunk_bodies])) continue;
+      if (const double of_centres = square(c); of_centres < limit(c)) use(c, std::sqrt(of_centres));
     }
   }
   /// From a to b [m].

@@ -238,7 +238,8 @@ Demand CriticalStep::evaluate(const std::vector<std::size_t>& chunks, const Inst
   const Clumps& clumps = at.bodies.clumps;
   if (!clumps.none())
     for (auto* array : {&clumps_.springs, &clumps_.dashpots}) array->resize(at.bodies.count());
-  team.each(chunks.size(), [&](std::size_t k) { sum(chunks[k], at); });
+  const std::vector<double> closings = at.pairs.closings_across(at.skins);
+  team.each(chunks.size(), [&](std::size_t k) { sum(chunks[k], at, closings); });
   if (clumps.none()) {
     team.each(chunks.size(), [&](std::size_t k) { compare(chunks[k], at); });
   } else {
@@ -271,7 +272,7 @@ void CriticalStep::evaluate_alone(std::size_t chunk, const Instant& at) {
 }
 
 /// Demands of contacts on the bodies of a chunk.
-void CriticalStep::sum(std::size_t chunk, const Instant& at) {
+void CriticalStep::sum(std::size_t chunk, const Instant& at, std::span<const double> closings) {
   const Bodies& bodies = at.bodies;
   Chunk& own = chunk_[chunk];
   own.at_walls = at.walls.has_candidates(chunk);
@@ -290,7 +291,7 @@ void CriticalStep::sum(std::size_t chunk, const Instant& at) {
     to.springs += demand(k, bodies, i, normal);
     if (bodies.clumps.clump_of(i) == no_clump) to.sphere_springs.add(springs_on(k, bodies, i), normal, square);
   };
-  at.pairs.each_near(chunk, bodies, at.shifts, at.skins, at.near, [&](std::size_t c, double distance) {
+  at.pairs.each_near(chunk, bodies, at.shifts, at.skins, closings, at.near, [&](std::size_t c, double distance) {
     own.near.push_back(static_cast<std::uint32_t>(c));
     const std::uint32_t a = at.pairs.a(c), b = at.pairs.b(c);
     const double overlap = std::max(bodies.position[a].w + bodies.position[b].w - distance, 0.0);

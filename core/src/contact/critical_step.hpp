@@ -1,6 +1,9 @@
 // The largest stable time step.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "bodies/bodies.hpp"
 #include "contact/contact_table.hpp"
 #include "contact/demand.hpp"
@@ -76,7 +79,8 @@ class CriticalStep {
   bool due(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const;
   Demand evaluate(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
   void evaluate_alone(std::size_t chunk, const Instant& at);
-  void sum(std::size_t chunk, const Instant& at);
+  /// `closings`: ContactTable::closings_across().
+  void sum(std::size_t chunk, const Instant& at, std::span<const double> closings);
   /// The demand of a clump is the sum over its bodies.
   void gather(std::size_t clump, const Clumps& clumps);
   void compare(std::size_t chunk, const Instant& at);
