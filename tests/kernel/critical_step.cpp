@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "two_spheres.hpp"
 
 namespace grit::test::critical_step_tests {
 namespace {
 
 constexpr double way = 0.05 * radius;
+constexpr CriticalStep::Change change{way, std::numeric_limits<double>::infinity()};
 
 /// A chunk of bodies just above a floor, and another one far above it.
 std::vector<Vec3> near_and_far() {
@@ -37,8 +40,8 @@ class CriticalStepAtWalls : public testing::Test {
             .overlap = 0};
   }
   double find() { return critical_.find(now(), passes_.team()).spring; }
-  double renew() { return critical_.renew(now(), way, passes_.team()).spring; }
-  bool due() const { return critical_.due(state_.wall_contacts, state_.lists.skins(), way); }
+  double renew() { return critical_.renew(now(), change, passes_.team()).spring; }
+  bool due() const { return critical_.due(state_.wall_contacts, state_.lists.skins(), change); }
   /// The floor moves far away, and candidates are found there.
   void remove_floor() {
     state_.surfaces[0].pose.shift.z() = -1;

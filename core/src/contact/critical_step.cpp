@@ -203,6 +203,9 @@ Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law) {
   return all;
 }
 
+// A chunk is evaluated again when the springs of one of its bodies have stiffened by this factor.
+constexpr double growth_due = 1.1;
+
 Demand CriticalStep::find(const Instant& at, Team& team) {
   demand_.resize(at.bodies.count()), least_.resize(at.bodies.count());
   chunk_.resize(chunks_of(at.bodies.count()));
@@ -212,7 +215,7 @@ Demand CriticalStep::find(const Instant& at, Team& team) {
   return evaluate(all, at, team);
 }
 
-bool CriticalStep::due(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const {
+bool CriticalStep::moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const {
   const Chunk& own = chunk_[chunk];
   way *= own.patience;
   if (skins.walked(chunk) > own.walked + way) return true;
@@ -221,16 +224,50 @@ bool CriticalStep::due(std::size_t chunk, const WallContacts& walls, const Skins
   return skins.walls_walked() > own.walls_walked + way || skins.walls_walked_at_search() > own.walls_walked;
 }
 
-bool CriticalStep::due(const WallContacts& walls, const Skins& skins, double way) const {
+bool CriticalStep::pressed(std::size_t chunk, double overlap) const {
+  const Chunk& own = chunk_[chunk];
+  return own.overlap > own.patience * own.patience * std::max(growth_due * growth_due * own.least_overlap, overlap);
+}
+
+double CriticalStep::stiffness(std::size_t chunk, const Instant& at) const {
+  const Bodies& bodies = at.bodies;
+  const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
+  std::array<double, chunk_bodies> sums{};
+  const auto add = [&](std::uint32_t i, double root) {
+    if (i >= first && i < last) sums[i - first] += root * bodies.velocity[i].w;
+  };
+  for (const std::uint32_t c : chunk_[chunk].near) {
+    const std::uint32_t a = at.pairs.a(c), b = at.pairs.b(c);
+    const double r_a = bodies.position[a].w, r_b = bodies.position[b].w;
+    const double overlap = r_a + r_b - at.pairs.branch(c, bodies, at.shifts).norm();
+    if (overlap <= 0) continue;
+    const double root = std::sqrt(r_a * r_b / (r_a + r_b) * overlap);
+    add(a, root), add(b, root);
+  }
+  at.walls.each_near(chunk, bodies, at.surfaces, 0, [&](const SurfaceContact& contact, const WallSurface&) {
+    add(contact.body, std::sqrt(bodies.position[contact.body].w * std::max(contact.overlap, 0.0)));
+  });
+  return *std::ranges::max_element(sums);
+}
+
+bool CriticalStep::due(const WallContacts& walls, const Skins& skins, const Change& change) const {
   for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk)
-    if (due(chunk, walls, skins, way)) return true;
+    if (moved(chunk, walls, skins, change.way) || pressed(chunk, change.overlap)) return true;
   return false;
 }
 
-Demand CriticalStep::renew(const Instant& at, double way, Team& team) {
+Demand CriticalStep::renew(const Instant& at, const Change& change, Team& team) {
+  std::vector<std::uint8_t> due(chunk_.size());
+  team.each(chunk_.size(), [&](std::size_t chunk) {
+    due[chunk] = moved(chunk, at.walls, at.skins, change.way);
+    if (due[chunk] || !pressed(chunk, change.overlap)) return;
+    Chunk& own = chunk_[chunk];
+    own.least_overlap = own.overlap;
+    due[chunk] = stiffness(chunk, at) > own.patience * growth_due * own.stiffness;
+  });
   std::vector<std::size_t> chunks;
   for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk)
-    if (due(chunk, at.walls, at.skins, way)) chunks.push_back(chunk);
+    if (due[chunk]) chunks.push_back(chunk);
   return evaluate(chunks, at, team);
 }
 
@@ -239,7 +276,10 @@ Demand CriticalStep::evaluate(const std::vector<std::size_t>& chunks, const Inst
   if (!clumps.none())
     for (auto* array : {&clumps_.springs, &clumps_.dashpots}) array->resize(at.bodies.count());
   const std::vector<double> closings = at.pairs.closings_across(at.skins);
-  team.each(chunks.size(), [&](std::size_t k) { sum(chunks[k], at, closings); });
+  team.each(chunks.size(), [&](std::size_t k) {
+    sum(chunks[k], at, closings);
+    if (at.overlap > 0) chunk_[chunks[k]].stiffness = stiffness(chunks[k], at);
+  });
   if (clumps.none()) {
     team.each(chunks.size(), [&](std::size_t k) { compare(chunks[k], at); });
   } else {
@@ -277,6 +317,7 @@ void CriticalStep::sum(std::size_t chunk, const Instant& at, std::span<const dou
   Chunk& own = chunk_[chunk];
   own.at_walls = at.walls.has_candidates(chunk);
   own.walked = at.skins.walked(chunk), own.walls_walked = at.skins.walls_walked();
+  own.overlap = 0;
   own.near.clear();
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const bool clumps = !bodies.clumps.none();
@@ -295,6 +336,7 @@ void CriticalStep::sum(std::size_t chunk, const Instant& at, std::span<const dou
     own.near.push_back(static_cast<std::uint32_t>(c));
     const std::uint32_t a = at.pairs.a(c), b = at.pairs.b(c);
     const double overlap = std::max(bodies.position[a].w + bodies.position[b].w - distance, 0.0);
+    own.overlap = std::max(own.overlap, overlap / std::min(bodies.position[a].w, bodies.position[b].w));
     const Stiffness k = at.law.stiffness(size_of(bodies, a, b, overlap), bodies.material[a], bodies.material[b]);
     const Vec3 normal = at.pairs.branch(c, bodies, at.shifts).normalized();
     const Six square = square_of(normal);
@@ -317,6 +359,7 @@ void CriticalStep::sum(std::size_t chunk, const Instant& at, std::span<const dou
   const double near = at.near + at.skins.reach();
   const auto add_wall = [&](const SurfaceContact& contact, const WallSurface& wall, double overlap) {
     const std::uint32_t a = contact.body;
+    own.overlap = std::max(own.overlap, overlap / bodies.position[a].w);
     const Stiffness k = at.law.stiffness(size_at_wall(bodies, a, overlap), bodies.material[a], wall.material);
     const Six square = square_of(contact.normal);
     add(a, k, contact.normal, square);
@@ -330,6 +373,7 @@ void CriticalStep::sum(std::size_t chunk, const Instant& at, std::span<const dou
   at.walls.each_near(chunk, bodies, at.surfaces, near, [&](const SurfaceContact& contact, const WallSurface& wall) {
     add_wall(contact, wall, std::max(contact.overlap - near, 0.0));
   });
+  own.least_overlap = own.overlap;
   own.demand = own.alone;
   const double ahead = at.ahead + at.skins.reach();
   each_group_of_facets(chunk, at, ahead, [&](std::span<const SurfaceContact> facets, const WallSurface& wall) {

@@ -26,7 +26,7 @@ Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law);
 ///
 /// Contacts form and open where bodies move. A chunk is evaluated again, independently of others, when its bodies have
 /// moved far enough, or walls with bodies of it near them: the further, the longer its own critical step is than that
-/// of all.
+/// of all. Where stiffness grows with overlap, also when the springs of one of its bodies have stiffened as far.
 ///
 /// Contacts with several facets of a mesh may begin in one step, as in a ring of facets. If they stop a body sooner
 /// than one like itself would, all within `ahead` count, and their impact limits the step.
@@ -50,11 +50,20 @@ class CriticalStep {
   };
   /// Evaluates all chunks.
   Demand find(const Instant& at, Team& team);
-  /// Evaluates chunks in which a body has moved further than `way` [m] since their last evaluation, or near which a
-  /// wall has, or bodies have become candidates.
-  Demand renew(const Instant& at, double way, Team& team);
+  /// After an evaluation of the chunk's contacts. `overlap`: the deepest over the smaller radius.
+  void touched(std::size_t chunk, double overlap) {
+    Chunk& own = chunk_[chunk];
+    own.overlap = overlap, own.least_overlap = std::min(own.least_overlap, overlap);
+  }
+  /// Changes since its last evaluation that make a chunk due.
+  struct Change {
+    double way;      ///< displacement of a body, or of a wall with bodies near it [m]
+    double overlap;  ///< deepest overlap over the smaller radius that may matter; infinite where springs do not stiffen
+  };
+  /// Evaluates chunks with such a change, or with new candidates at walls.
+  Demand renew(const Instant& at, const Change& change, Team& team);
   /// Whether there are such chunks.
-  bool due(const WallContacts& walls, const Skins& skins, double way) const;
+  bool due(const WallContacts& walls, const Skins& skins, const Change& change) const;
 
   void serialize(Archive& archive) {
     archive(demand_, least_, clumps_.springs, clumps_.dashpots, clumps_.dashpot, chunk_);
@@ -62,21 +71,31 @@ class CriticalStep {
 
  private:
   struct Chunk {
-    Demand alone;             ///< largest of bodies with one contact, with a body like themselves
-    Demand demand;            ///< largest of single bodies
-    Demand together;          ///< largest of its pairs, and of clumps with a body in it
-    bool at_walls = false;    ///< whether it had candidates at walls, whose contacts may have opened since
-    double walked = 0;        ///< displacement bound at its last evaluation [m]
-    double walls_walked = 0;  ///< the same of walls
-    double patience = 1;      ///< displacement after which it is due, over that of the chunk with the shortest step
+    Demand alone;              ///< largest of bodies with one contact, with a body like themselves
+    Demand demand;             ///< largest of single bodies
+    Demand together;           ///< largest of its pairs, and of clumps with a body in it
+    bool at_walls = false;     ///< whether it had candidates at walls, whose contacts may have opened since
+    double walked = 0;         ///< displacement bound at its last evaluation [m]
+    double walls_walked = 0;   ///< the same of walls
+    double overlap = 0;        ///< deepest overlap over the smaller radius
+    double least_overlap = 0;  ///< least value of it since its last evaluation or comparison of stiffness()
+    double stiffness = 0;      ///< stiffness() at its last evaluation
+    double patience = 1;       ///< displacement after which it is due, over that of the chunk with the shortest step
     std::vector<std::uint32_t> near;  ///< candidates that count as contacts
     Demand all() const { return larger(demand, together); }
     void serialize(Archive& archive) {
-      archive(alone, demand, together, at_walls, walked, walls_walked, patience, near);
+      archive(alone, demand, together, at_walls, walked, walls_walked, overlap, least_overlap, stiffness, patience,
+              near);
     }
   };
   static constexpr double most_patience = 4;
-  bool due(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const;
+  /// Whether bodies or walls have moved far enough.
+  bool moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const;
+  /// Whether overlaps have grown enough to compare the stiffness of springs.
+  bool pressed(std::size_t chunk, double overlap) const;
+  /// The largest sum over the contacts of one body of √(r δ)/m, r the reduced radius and δ the overlap [m/kg]: Hertzian
+  /// springs are stiffer in proportion.
+  double stiffness(std::size_t chunk, const Instant& at) const;
   Demand evaluate(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
   void evaluate_alone(std::size_t chunk, const Instant& at);
   /// `closings`: ContactTable::closings_across().

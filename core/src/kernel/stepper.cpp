@@ -201,7 +201,11 @@ void Stepper::take_loads() {
     for (std::size_t w = 0; w < loads_.size(); ++w) state_.walls.add(w, loads_[w]);
   }
   state_.overlap = 0;
-  for (const ChunkResult& chunk : passes_.chunks()) state_.overlap = std::max(state_.overlap, chunk.overlap);
+  const auto& chunks = passes_.chunks();
+  for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
+    state_.overlap = std::max(state_.overlap, chunks[chunk].overlap);
+    time_step_.touched(chunk, chunks[chunk].overlap);
+  }
   balance_.add_losses();
   check_overlap(state_, view_);
 }

@@ -14,10 +14,9 @@ constexpr double overlap_growth = 1.2, shallowest = 1e-6;
 // Fraction of the overlap that an impact would reach to which a packing with many contacts per body may be compressed
 // at the step set for a pair: 20 k_s/m for a cubic packing with friction, 7 k_s/m for a pair. At 0.8 of the step of the
 // pair it starts to oscillate at (7 / 20 / 0.8²)² = 0.3 of that overlap, that is from a fraction of 0.3 / 1.2 = 0.25
-// on. Where dashpots shorten the step the limit is higher: the packing of tests/stability is stable at 0.4 and unstable
-// at 0.5. Not covered by any fraction: a packing with smaller overlaps than some contact had before. A face-centred
-// packing has 40 k_s/m and then oscillates at 0.8 of the step.
-constexpr double packing_fraction = 0.15;
+// on. A face-centred packing has 40 k_s/m, and oscillates from a quarter of that on. Where dashpots shorten the step
+// the limit is higher: the packing of tests/stability is stable at 0.4 and unstable at 0.5.
+constexpr double packing_fraction = 0.06;
 
 /// Normal stiffness of two bodies of the smallest radius, or of one and a wall, at this overlap over a radius [N/m].
 double stiffness_of_smallest(const State& state, std::size_t a, std::size_t b, bool wall, double overlap) {
@@ -68,10 +67,13 @@ void Stiffening::update(const State& state) {
   linear_until_ = linear;
 }
 
+double Stiffening::least_overlap() const {
+  return is_there() ? overlap_growth * packing_fraction * expected_ : infinity;
+}
+
 bool Stiffening::exceeds(double overlap, const State& state, const DisplacementBounds& bounds) const {
-  const double pressed = std::max(pressed_, packing_fraction * expected_);
   return is_there() &&
-         (overlap > overlap_growth * pressed || bounds.closing_speed(state.time.previous_dt) > expected_speed_);
+         (overlap > overlap_growth * expected_ || bounds.closing_speed(state.time.previous_dt) > expected_speed_);
 }
 
 bool Stiffening::may_exceed(const State& state, const DisplacementBounds& bounds) const {
@@ -89,7 +91,7 @@ void Stiffening::expect(const State& state, const DisplacementBounds& bounds) {
   const double speed =
       std::max({2 * fastest, fastest + bounds.wall_closing_speed(), bounds.closing_speed(state.time.previous_dt)});
   const double deepest = std::min(1.0, state.settings.guards.overlap);
-  double overlap = pressed_ = std::max(state.overlap, linear_until_);
+  double overlap = std::max(state.overlap, linear_until_);
   while (overlap < deepest && speed_of_impact(state, overlap) < speed) overlap *= overlap_growth;
   expected_ = overlap;
   expected_speed_ = overlap < deepest ? speed_of_impact(state, overlap_growth * overlap) : infinity;

@@ -21,14 +21,15 @@ class Stiffening {
   bool may_exceed(const State& state, const DisplacementBounds& bounds) const;
   /// Sets the expected overlap.
   void expect(const State& state, const DisplacementBounds& bounds);
+  /// The least overlap over a radius at which a packing may need a shorter step; infinite if springs do not stiffen.
+  double least_overlap() const;
   /// Expected maximum overlap over a radius; 0 if springs do not stiffen.
   double expected_overlap() const { return is_there() ? expected_ : 0; }
 
-  void serialize(Archive& archive) { archive(linear_until_, pressed_, expected_, expected_speed_); }
+  void serialize(Archive& archive) { archive(linear_until_, expected_, expected_speed_); }
 
  private:
   double linear_until_ = 0;  // overlap over a radius; infinite if springs do not stiffen
-  double pressed_ = 0;       // the largest overlap when the time step was set, or linear_until_
   double expected_ = 0;
   double expected_speed_ = 0;  // closing speed above which the time step must be set again [m/s]
 };

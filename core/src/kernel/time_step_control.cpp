@@ -74,13 +74,13 @@ void TimeStepControl::set(State& state, const World& world, DisplacementBounds& 
 
 void TimeStepControl::follow(State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
   const Settings& settings = state.settings;
-  const double distance = renew_distance * state.statistics.mean_diameter;
+  const CriticalStep::Change change{renew_distance * state.statistics.mean_diameter, stiffening_.least_overlap()};
   // Nothing depends on contacts then; the critical step is evaluated at rebuilds only, for reports.
   const bool unchecked = settings.time_step.value && settings.time_step.allow_unstable;
   if (requested_) set(state, world, bounds, passes);
   // Contacts form long before the next rebuild.
-  else if (!unchecked && critical_.due(state.wall_contacts, state.lists.skins(), distance))
-    choose(critical_.renew(near_contacts(state), distance, passes.team()), state, bounds);
+  else if (!unchecked && critical_.due(state.wall_contacts, state.lists.skins(), change))
+    choose(critical_.renew(near_contacts(state), change, passes.team()), state, bounds);
   else if (!settings.time_step.value &&
            state.time.dt * bounds.displacement_rate() > max_displacement(settings.time_step, settings.guards))
     choose(contacts_, state, bounds);

@@ -20,13 +20,16 @@ class TimeStepControl {
   /// Sets the time step from all contacts. Throws NumericsError if a prescribed value is above the critical one, Error
   /// if nothing limits it.
   void set(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
-  /// Before an evaluation without a rebuild: sets the time step if requested; otherwise updates it for new contacts
-  /// where bodies have moved far enough, and for speeds. A prescribed step that may be unstable needs no updates.
+  /// Before an evaluation without a rebuild: sets the time step if requested; otherwise updates it for new and stiffer
+  /// contacts where bodies have moved or been compressed far enough, and for speeds. A prescribed step that may be
+  /// unstable needs no updates.
   void follow(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
   /// Whether the next evaluation may find stiffer springs.
   bool may_stiffen(const State& state, const DisplacementBounds& bounds) const {
     return stiffening_.may_exceed(state, bounds);
   }
+  /// After an evaluation of the chunk's contacts. `overlap`: the deepest over the smaller radius.
+  void touched(std::size_t chunk, double overlap) { critical_.touched(chunk, overlap); }
   /// After an evaluation: sets the time step again if springs have stiffened (if `may_stiffen` was true before), or if
   /// free walls have stiffer contacts.
   void react(bool may_have_stiffened, State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
