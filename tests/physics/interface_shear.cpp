@@ -13,9 +13,9 @@ namespace {
 TEST(InterfaceShear, OnAFlatSurfaceSlidesAtItsFrictionAngle) {
   Curves curves;
   run_to_the_end("sims/interface-shear/quick-rn-001.json",
-                 {"/scenario/surface=\"flat\"", "/scenario/width=6e-3", "/scenario/height=5e-3",
-                  "/scenario/surface_friction_angle=\"16 deg\"", "/scenario/shear_displacement=0.5e-3",
-                  "/scenario/inertial_number=2e-3"},
+                 {"/scenario/surface=\"flat\"", "/scenario/void_ratio=0.56", "/scenario/width=6e-3",
+                  "/scenario/height=5e-3", "/scenario/surface_friction_angle=\"16 deg\"",
+                  "/scenario/shear_displacement=0.5e-3", "/scenario/inertial_number=2e-3"},
                  curves);
   const double ratio = std::tan(16 * std::numbers::pi / 180);
   EXPECT_NEAR(curves.mean("stress_ratio", 0.3, 1), ratio, 0.01 * ratio);

@@ -326,11 +326,12 @@ TEST(NeighbourSearch, AtWallsAloneKnowsThatAWallOfOnePeriodHasNoEnds) {
   EXPECT_GE(t.kernel().state().lists.searches_at_walls(), 3u);
 }
 
-TEST(NeighbourSearch, AtWallsAloneKnowsWallsThatAStageAdds) {
+TEST(NeighbourSearch, AtWallsAloneKnowsWallsThatAStageMoves) {
   Description d = held(2, plane(Vec3::Zero(), Vec3::UnitZ()), {1, 0, 0});
+  d["walls"]["lid"] = plane({0, 0, 1}, -Vec3::UnitZ());
   Description next = d["stages"][0];
   next["name"] = "closed";
-  next["change"]["walls"]["lid"] = plane({0, 0, held_height + held_spacing + 0.99 * held_radius}, -Vec3::UnitZ());
+  next["change"]["walls"]["lid"]["point"] = {0, 0, held_height + held_spacing + 0.99 * held_radius};
   d["stages"].push_back(next);
   Trial t(d);
   t.step(400);
