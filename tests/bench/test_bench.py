@@ -81,7 +81,7 @@ class Bench(unittest.TestCase):
         few = {'drum': {'region': {'type': 'box', 'low': [-0.02, -0.09, 0], 'high': [0.02, -0.06, 0.1]}, 'count': 400},
                'silo': {'high': [0.16, 0.05, 0.04], 'count': 1000}}
         for scene, source in few.items():
-            settings = {f'/bodies/sand/source/{key}': value for key, value in source.items()} | {'/stages/0/until/value': 0.1}
+            settings = {f'/bodies/sand/source/{key}': value for key, value in source.items()} | {'/stages/0/until/value': 0.4}
             box = flow.Flow(scene, GRIT, settings | ({'/stages/1/until/value': 0.02} if scene == 'silo' else {}))
             found = {code: box.run(code, 'hertz', 1, 20, 100) for code in ('grit', flow.OWN_STEP, 'liggghts', 'lammps')
                      if code == flow.OWN_STEP or peers.installed(code)}
