@@ -63,7 +63,7 @@ TEST(CriticalStep, FollowsContactsBetweenSearches) {
   EXPECT_DOUBLE_EQ(critical(), Trial(description_of(as_they_are(t.world()))).kernel().critical_time_step());
   while (t.kernel().state().pairs.touching_count() > 0) t.step();
   EXPECT_EQ(t.kernel().state().lists.rebuilds(), searches) << "without a search";
-  t.step(25);
+  t.step(50);
   EXPECT_DOUBLE_EQ(critical(), alone);
 }
 
