@@ -13,8 +13,7 @@ ElasticEnergy EnergyBalance::elastic(std::size_t chunk, double factor) const {
   ElasticEnergy all;
   const auto add = [&](const PairSize& size, std::size_t material_a, std::size_t material_b,
                        std::span<const double> history) {
-    const ElasticEnergy one = state_.settings.law->energy(size, material_a, material_b, history);
-    all.normal += one.normal, all.shear += size.work_fraction() * one.shear, all.rolling += one.rolling;
+    all = all + state_.settings.law->energy(size, material_a, material_b, history);
   };
   // Springs carry no tension, unless the law acts at a distance.
   const auto overlap_of_springs = [tension = state_.settings.law->has_reach()](double overlap) {

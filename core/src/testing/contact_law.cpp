@@ -504,7 +504,7 @@ TEST_P(ContactLawContract, ForceIsTheSlopeOfTheEnergy) {
       return std::pair((stored(more) - stored(less)) / (2 * little), at);
     };
     auto [force, slipped] = slope(slip, 1e-2 * overlap, 1e-4 * overlap);
-    EXPECT_NEAR(force, shear(slipped, 0).norm(), 1e-6 * shear(slipped, 0).norm() + 1e-9);
+    EXPECT_NEAR(force, law_shear(slipped, 0).norm(), 1e-6 * law_shear(slipped, 0).norm() + 1e-9);
     auto [moment, rolled] = slope(roll, 1e-2 * overlap, 1e-4 * overlap);
     EXPECT_NEAR(moment, law_moment(rolled, 0).norm(), 1e-6 * law_moment(rolled, 0).norm() + 1e-9);
     auto [torque, twisted] = slope(twist, 1e-2 * overlap, 1e-4 * overlap);
@@ -524,7 +524,7 @@ TEST_P(ContactLawContract, StiffnessIsTheSlopeOfTheForce) {
     const double h = 1e-4 * overlap, little = 1e-3 * overlap;
     EXPECT_NEAR((normal(overlap + h) - normal(overlap - h)) / (2 * h), k.normal, 1e-6 * k.normal);
     slip(slipped, little), roll(rolled, little), twist(twirled, little);
-    EXPECT_NEAR(shear(slipped, 0).norm() / little, k.shear, 1e-9 * k.shear);
+    EXPECT_NEAR(law_shear(slipped, 0).norm() / little, k.shear, 1e-9 * k.shear);
     EXPECT_NEAR(law_moment(rolled, 0).norm() / little, k.rolling, 1e-9 * k.rolling + 1e-12 * k.normal);
     EXPECT_NEAR(law_moment(twirled, 0).norm() / little, k.twisting, 1e-9 * k.twisting + 1e-12 * k.normal);
     EXPECT_GE(k.damping_ratio, 0);
@@ -554,7 +554,7 @@ TEST_P(ContactLawContract, StatedDampingCoversTheDashpots) {
     Pairs slipping = at({speed, 0, 0});
     // The surfaces slip faster than the centres move: the branch is extended to the sum of the radii.
     const double reach = pair.radius_a + pair.radius_b, slip = speed * reach / (reach - overlap);
-    const double across = shear(slipping, 0).norm() / slip - k.shear * dt,
+    const double across = law_shear(slipping, 0).norm() / slip - k.shear * dt,
                  critical_shear = 2 * std::sqrt(k.shear / (3.5 * inverse_mass));
     EXPECT_GE(k.shear_damping_ratio * critical_shear, across - 1e-6 * critical_shear);
   }
@@ -606,9 +606,10 @@ TEST_P(ContactLawContract, ClosedCyclesLeaveNoForceAndYieldNoEnergy) {
         const double closed = stiffness_follows_overlap() ? 1e-11 : 1e-12;
         EXPECT_LE(shear(pairs, 0).norm(), closed * largest + 1e-9 * closed) << press;
       }
-      // Slip increments use the radii, forces the branch: if both overlap and shear change in a cycle, they differ by
-      // the factor 1 - branch / radii, an effect of second order.
-      EXPECT_LE(work, (0.1 * std::abs(press) + 1e-9) * turnover) << press << ' ' << lag;
+      // Springs of constant stiffness yield nothing, to round-off. Where stiffness follows the overlap, the work
+      // depends on the step.
+      const double gained = stiffness_follows_overlap() ? 0.1 * std::abs(press) + 1e-9 : 1e-9;
+      EXPECT_LE(work, gained * turnover) << press << ' ' << lag;
     }
   Pairs pairs = two(0.02);
   double largest = 0;
@@ -638,7 +639,10 @@ TEST_P(ContactLawContract, WallIsLikeAFixedSphere) {
     wall.contact.material = ratio == 1 ? 0 : static_cast<std::uint32_t>(surface);
     for (int step = 0; step < 3; ++step) pairs.evaluate(), wall.evaluate();
     const double force = vec(pairs.row(0).force).norm(), eps = ratio == 1 ? 1e-12 : 1e-5;
-    EXPECT_LE((vec(pairs.row(0).force) - vec(wall.row.force)).norm(), eps * force);
+    // The shear force on a sphere exceeds that of its spring, as the distance of the centres is below the sum of the
+    // radii; at a wall they are the same.
+    const Vec3 of_springs = vec(pairs.row(0).force) - shear(pairs, 0) + law_shear(pairs, 0);
+    EXPECT_LE((of_springs - vec(wall.row.force)).norm(), eps * force);
     EXPECT_NEAR(pairs.row(0).force.w, wall.row.force.w, eps * force);
     if (ratio == 1) {
       EXPECT_LE((law_moment(pairs, 0) - wall.law_moment()).norm(), 1e-12 * force);

@@ -91,7 +91,12 @@ struct Capillary : LawBase {
   };
   static constexpr LawField fields[] = {
       {.name = "bridge", .unit = "1", .doc = "1 since the surfaces touched, 0 before"},
-      {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .swap = -1, .needed_by = with_shear}};
+      {.name = "shear",
+       .unit = "N",
+       .doc = "shear spring force on b",
+       .width = 3,
+       .swap = -1,
+       .needed_by = with_shear}};
 
   static unsigned features(const Pair<double>& pair) {
     return (pair.friction > 0 ? with_shear : 0u) | (pair.damping > 0 ? with_damping : 0u);
@@ -150,7 +155,7 @@ struct Capillary : LawBase {
     response.normal_force = solid - state.bridge * pair.tension * radius / (L(1.0) + x * (L(linear) + L(square) * x));
 
     if constexpr ((Features & with_shear) != 0) {
-      response.shear = shortened(stretched(at, state.shear, ks, at.velocity), pair.friction * solid);
+      response.shear = shortened(stretched(at, state.shear, ks, at.velocity), at.friction_limit(pair.friction, solid));
       state.shear = response.shear;
     }
     return response;

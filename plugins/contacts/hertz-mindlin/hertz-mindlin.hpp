@@ -60,7 +60,7 @@ struct HertzMindlin : LawBase {
     Vec<L> rolling;
   };
   static constexpr LawField fields[] = {
-      {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .swap = -1, .needed_by = with_shear},
+      {.name = "shear", .unit = "N", .doc = "shear spring force on b", .width = 3, .swap = -1, .needed_by = with_shear},
       {.name = "contact_radius",
        .unit = "m",
        .doc = "radius of the contact area",
@@ -121,8 +121,8 @@ struct HertzMindlin : LawBase {
     const L kept = min(L(1.0), contact_radius / max(state.contact_radius, L(tiny<L>)));
     state.contact_radius = contact_radius;
     if constexpr ((Features & with_shear) != 0) {
-      response.shear =
-          shortened(stretched(at, kept * state.shear, ks, at.velocity), pair.friction * response.normal_force);
+      response.shear = shortened(stretched(at, kept * state.shear, ks, at.velocity),
+                                 at.friction_limit(pair.friction, response.normal_force));
       state.shear = response.shear;
     }
     if constexpr ((Features & with_rolling) != 0) {

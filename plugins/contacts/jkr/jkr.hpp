@@ -71,7 +71,7 @@ struct Jkr : LawBase {
   };
   static constexpr LawField fields[] = {
       {.name = "bond", .unit = "1", .doc = "1 since the surfaces touched, 0 before"},
-      {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .swap = -1, .needed_by = with_shear},
+      {.name = "shear", .unit = "N", .doc = "shear spring force on b", .width = 3, .swap = -1, .needed_by = with_shear},
       {.name = "contact_radius", .unit = "m", .doc = "radius of the contact area", .needed_by = with_shear}};
 
   static unsigned features(const Pair<double>& pair) {
@@ -184,7 +184,7 @@ struct Jkr : LawBase {
       const L ks = L(8.0) * pair.shear_modulus * contact_radius;
       // A spring that softens as the area shrinks loses force and energy in proportion to its stiffness.
       const L kept = min(L(1.0), contact_radius / max(state.contact_radius, L(tiny<L>)));
-      const L limit = state.bond * pair.friction * (response.normal_force + L(2.0) * pull_off);
+      const L limit = at.friction_limit(pair.friction, state.bond * (response.normal_force + L(2.0) * pull_off));
       response.shear = shortened(stretched(at, kept * state.shear, ks, at.velocity), limit);
       state.shear = response.shear;
       state.contact_radius = state.bond * contact_radius;

@@ -70,7 +70,7 @@ struct LinearCohesive : LawBase {
   };
   static constexpr LawField fields[] = {
       {.name = "bond", .unit = "1", .doc = "1 since the surfaces touched, 0 before"},
-      {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .swap = -1, .needed_by = with_shear},
+      {.name = "shear", .unit = "N", .doc = "shear spring force on b", .width = 3, .swap = -1, .needed_by = with_shear},
       {.name = "rolling",
        .unit = "N m",
        .doc = "rolling moment on b",
@@ -124,7 +124,8 @@ struct LinearCohesive : LawBase {
     const L carried = state.bond * max(L(0.0), kn * at.overlap + pull_off_force(pair, at.radius_a, at.radius_b));
 
     if constexpr ((Features & with_shear) != 0) {
-      response.shear = shortened(stretched(at, state.shear, ks, at.velocity), pair.friction * carried);
+      response.shear =
+          shortened(stretched(at, state.shear, ks, at.velocity), at.friction_limit(pair.friction, carried));
       state.shear = response.shear;
     }
     if constexpr ((Features & with_rolling) != 0) {

@@ -96,7 +96,7 @@ struct LinearFrictional : LawBase {
     }
 
     if constexpr ((Features & with_shear) != 0) {
-      const L limit = pair.friction * response.normal_force;
+      const L limit = at.friction_limit(pair.friction, response.normal_force);
       const Vec<L> trial = stretched(at, state.shear, ks, at.velocity);
       const Vec<L> spring = shortened(trial, limit);
       state.shear = spring;

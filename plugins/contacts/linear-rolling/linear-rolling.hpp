@@ -87,7 +87,7 @@ struct LinearRolling : LawBase {
     L twisting;
   };
   static constexpr LawField fields[] = {
-      {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .swap = -1, .needed_by = with_shear},
+      {.name = "shear", .unit = "N", .doc = "shear spring force on b", .width = 3, .swap = -1, .needed_by = with_shear},
       {.name = "rolling",
        .unit = "N m",
        .doc = "rolling moment on b",
@@ -146,7 +146,7 @@ struct LinearRolling : LawBase {
 
     if constexpr ((Features & with_shear) != 0) {
       const Vec<L> shear = stretched(at, state.shear, ks, at.velocity);
-      response.shear = shortened(shear, pair.friction * response.normal_force);
+      response.shear = shortened(shear, at.friction_limit(pair.friction, response.normal_force));
       state.shear = response.shear;
     }
 
@@ -182,7 +182,7 @@ struct LinearRolling : LawBase {
     L slid(0.0);
     if constexpr ((Features & with_shear) != 0) {
       slid = slipped(at.turn(before.shear), stretched(at, before.shear, ks, at.velocity),
-                     pair.friction * response.normal_force);
+                     at.friction_limit(pair.friction, response.normal_force));
     }
     const L angular = ks * at.radius_a * at.radius_b, rolling_stiffness = pair.rolling * angular;
     // Rolling stiffness if active; one division serves both springs.

@@ -27,10 +27,6 @@ struct PairSize {
   double inverse_mass_a, inverse_mass_b;  ///< 1/kg
   double overlap;  ///< largest expected overlap ≥ 0 [m]; minus the distance of two surfaces within the reach of a law
   bool wall = inverse_mass_b == 0 && radius_b == radius_a;
-
-  /// Work of the shear force on the bodies over the work on its spring. They differ because laws compute slip with the
-  /// radii as arms, whereas the arms of the force add up to the branch.
-  double work_fraction() const { return wall ? 1 : 1 - overlap / (radius_a + radius_b); }
 };
 
 /// Elastic energy of one contact [J].

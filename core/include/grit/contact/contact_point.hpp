@@ -27,6 +27,7 @@ struct ContactPoint {
   Vec<L> normal;                     ///< unit, from a to b
   L overlap;                         ///< m, > 0 in contact; minus the distance within the reach of the law
   L radius_a, radius_b;              ///< m; for a wall radius_b = radius_a
+  L branch_fraction;                 ///< distance of the centres over the sum of the radii; 1 for a wall
   L inverse_mass_a, inverse_mass_b;  ///< 1/kg; 0 for a wall
   Vec<L> velocity;                   ///< of b's surface relative to a's, with the radii as arms [m/s]; zero while both
                                      ///< rotate as one rigid body; its integral over a closed path is zero
@@ -35,17 +36,25 @@ struct ContactPoint {
   Turn<L> turn;                      ///< rotates vectors of the contact history to the present instant
 
   [[gnu::always_inline]] Vec<L> tangential(const Vec<L>& v) const { return v - dot(v, normal) * normal; }
+
+  /// The limit of Response::shear [N] at which the shear force on the bodies is `friction` times `normal_force`.
+  [[gnu::always_inline]] L friction_limit(const L& friction, const L& normal_force) const {
+    return friction * normal_force * branch_fraction;
+  }
 };
 
 /// Force and moment of a contact.
 template <class L>
 struct Response {
   L normal_force{};  ///< N, > 0 in compression
-  Vec<L> shear{};    ///< N, on b, in the contact plane
+  Vec<L> shear{};    ///< N, on b, in the contact plane: of springs and dashpots that ContactPoint::velocity stretches.
+                     ///< Its limit by Coulomb's law is ContactPoint::friction_limit(). The loop divides it by
+                     ///< branch_fraction for the force on the bodies, which then does the same work on them
   Vec<L> moment{};   ///< N m, on b; the opposite acts on a
 };
 
-/// Energy dissipated by one contact in the last step [J], with ContactPoint::velocity as the rate of slip.
+/// Energy dissipated by one contact in the last step [J]; that of shear is Response::shear times the slip by
+/// ContactPoint::velocity.
 template <class L>
 struct Loss {
   L friction{}, rolling{}, viscosity{};

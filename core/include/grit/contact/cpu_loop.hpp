@@ -232,7 +232,7 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
                       .overlap = Law::traits.reach ? overlap : std::max(0.0, overlap),
                       .wall = false};
   const ElasticEnergy held = Law::energy(size, table[kind], state);
-  batch.losses->friction += held.shear * size.work_fraction(), batch.losses->rolling += held.rolling;
+  batch.losses->friction += held.shear, batch.losses->rolling += held.rolling;
   if (size.overlap < 0) batch.losses->viscosity += held.normal;
 }
 
@@ -366,7 +366,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       at.normal = normal;
       if constexpr (Law::traits.reach) at.overlap = overlap;
       else at.overlap = max(overlap, L(0.0));
-      const L work_fraction = L(1.0) - at.overlap * per_reach;  // see PairSize
+      at.branch_fraction = distance * per_reach;
       at.radius_a = in_precision<L>(pa.w), at.radius_b = in_precision<L>(pb.w);
       at.inverse_mass_a = in_precision<L>(va.w), at.inverse_mass_b = in_precision<L>(vb.w);
       at.turn =
@@ -391,21 +391,23 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
             << sub;
       if constexpr (EnergyTerms) {
         const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
-        left.friction = left.friction - widened(select(contacts, own.friction * work_fraction, zero));
+        left.friction = left.friction - widened(select(contacts, own.friction, zero));
         left.rolling = left.rolling - widened(select(contacts, own.rolling, zero));
         left.viscosity = left.viscosity - widened(select(contacts, own.viscosity, zero));
       }
       for (std::size_t f = 0; f < fields; ++f)
         store_lanes(select(contacts, member<L>(state, kept[f]), zero), state_at + f * block_size);
 
-      // The arms add up to the branch, so that angular momentum is conserved. They are proportional to the radii, so
-      // that the work of shear is the same fraction of that on its spring in all motions: laws use the radii as arms.
+      // The shear spring acts on surfaces at the sum of the radii from each other. Centres that are nearer move less
+      // than these surfaces, so that the force on them is larger; its moments are those of the spring at the radii.
+      // The work on the bodies is then that on the spring in all motions, and angular momentum is conserved.
       const Vec<L> none{zero, zero, zero};
-      const Vec<L> force = select(contacts, response.normal_force * normal + response.shear, none);
+      const Vec<L> force =
+          select(contacts, response.normal_force * normal + (reach * per_distance) * response.shear, none);
       const Vec<L> lever = cross(normal, select(contacts, response.shear, none));
       const Vec<L> moment = select(contacts, response.moment, none);
-      const Vec<L> moment_a = -moment - (work_fraction * at.radius_a) * lever;
-      const Vec<L> moment_b = moment - (work_fraction * at.radius_b) * lever;
+      const Vec<L> moment_a = -moment - at.radius_a * lever;
+      const Vec<L> moment_b = moment - at.radius_b * lever;
       const L normal_force = select(contacts, response.normal_force, zero);
       const L shown_overlap = select(contacts, at.overlap, zero);
 
@@ -511,6 +513,7 @@ template <class Law, unsigned Features, class L, bool EnergyTerms>
     at.normal = normal;
     at.overlap = spin_and_overlap.w;
     at.radius_a = at.radius_b = pa.w;
+    at.branch_fraction = L(1.0);
     at.inverse_mass_a = va.w, at.inverse_mass_b = L(0.0);
     at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt, L(1.0));
     // The last term moves the wall's velocity to the sphere's surface: a sphere that a rotating wall carries along, or

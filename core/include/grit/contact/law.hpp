@@ -14,7 +14,7 @@
 //
 //     template <class L> struct State { Vec<L> shear; };           // contact history; members as in Pair, or none
 //     static constexpr LawField fields[] = {                       // one entry per member, in order
-//         {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .swap = -1, .needed_by = with_shear}};
+//         {.name = "shear", .unit = "N", .doc = "spring force on b", .width = 3, .swap = -1, .needed_by = with_shear}};
 //
 //     template <unsigned Features, class L> [[gnu::always_inline]]
 //     static Response<L> evaluate(const ContactPoint<L>&, const Pair<L>&, State<L>&);
@@ -36,6 +36,9 @@
 // evaluate() may be called again at the same instant, with the updated history, dt = 0 and the identity as turn. It
 // must then return the same force. The normal force may be negative (attraction); the law must then keep friction
 // limits from becoming negative.
+// Response::shear is the force of the spring that ContactPoint::velocity stretches. The force on the bodies is larger
+// in contacts that overlap: the limit of the spring by Coulomb's law is at.friction_limit(friction, normal_force).
+// losses() and energy() are those of the spring.
 // Bodies interact while they overlap, or with `.reach = true` while their surfaces are nearer than reach() [m]. The
 // contact history then exists from the reach on, with zeros at first, so that it can hold whether there is a bond. Two
 // bodies of the largest radius have the largest reach, and it grows at most in proportion to the radii. The normal

@@ -126,6 +126,12 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
     return force - force.dot(n) * n;
   }
 
+  /// Response::shear: the shear force on b times the distance of the centres over the sum of the radii.
+  Vec3 law_shear(Pairs& pairs, std::size_t c) {
+    const double reach = pairs.position(pairs.a(c)).w + pairs.position(pairs.b(c)).w;
+    return branch(pairs, c).norm() / reach * shear(pairs, c);
+  }
+
   /// Two spheres of radius 1 and 0.7 in contact along z, with the given overlap.
   Pairs two(double overlap, double dt = dt_) {
     Pairs pairs(*law_, dt);
