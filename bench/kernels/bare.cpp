@@ -37,7 +37,6 @@ struct Meeting {
 };
 struct Answer {
   Triple force, lever, shear;  // on b; of moments; history
-  double share;                // fraction of the radii that are arms
 };
 
 constexpr double modulus = 300e6, shear_ratio = 0.3;  // as in the material of dense.hpp
@@ -50,7 +49,8 @@ const double friction = std::tan(18 * std::numbers::pi / 180), damping = damping
   const double distance = std::sqrt(dot(m.branch, m.branch)), overlap = m.radii - distance;
   const double distance_before = std::sqrt(dot(branch_before, branch_before));
   const double per_area = 1 / (distance * distance_before);
-  const Triple normal = (per_area * distance_before) * m.branch, before = (per_area * distance) * branch_before;
+  const double per_distance = per_area * distance_before, fraction = distance / m.radii;
+  const Triple normal = per_distance * m.branch, before = (per_area * distance) * branch_before;
   const Triple bisector = normal + before;
   const Triple slip =
       m.velocity - cross(m.arms, 0.5 * bisector) + ((m.radii - distance_before) * (1 / time_step)) * (normal - before);
@@ -63,9 +63,9 @@ const double friction = std::tan(18 * std::numbers::pi / 180), damping = damping
   const Triple carried = m.shear - (dot(m.shear, normal) * over) * bisector;
   const Triple turned = ((1 - half * half) * scale) * carried + (2 * half * scale) * cross(normal, carried);
   const Triple trial = turned - (shear_ratio * time_step * m.stiffness) * (slip - closing * normal);
-  const double length = std::sqrt(dot(trial, trial)), limit = friction * force;
+  const double length = std::sqrt(dot(trial, trial)), limit = friction * force * fraction;
   const Triple shear = (length > limit ? limit / length : 1.0) * trial;
-  return {force * normal + shear, cross(normal, shear), shear, distance / m.radii};
+  return {force * normal + (m.radii * per_distance) * shear, cross(normal, shear), shear};
 }
 
 /// The dense grains in the order of a space-filling curve, with neighbour lists of the same skin as in Dense.
@@ -115,11 +115,11 @@ class Bare {
         continue;
       }
       ++touching;
-      const auto [force, lever, shear, share] =
+      const auto [force, lever, shear] =
           law({branch, three(b.velocity - a.velocity), three(ra * a.spin + rb * b.spin), three(a.spin + b.spin),
                ra + rb, pair.stiffness, pair.dashpot, three(memory_[p])});
       memory_[p] = Four{shear.x, shear.y, shear.z, 0};
-      add(pair, Four{force.x, force.y, force.z, share * ra}, Four{lever.x, lever.y, lever.z, share * rb});
+      add(pair, Four{force.x, force.y, force.z, ra}, Four{lever.x, lever.y, lever.z, rb});
     }
     return touching;
   }
@@ -167,7 +167,7 @@ class Bare {
         const Answer answer =
             law({branch.at(k), velocity.at(k), arms.at(k), spins.at(k), radii, stiffness[k], dashpot[k], memory.at(k)});
         memory.set(k, answer.shear), force.set(k, answer.force), lever.set(k, answer.lever);
-        force.w[k] = 0.5 * answer.share * (radii - difference), lever.w[k] = 0.5 * answer.share * (radii + difference);
+        force.w[k] = 0.5 * (radii - difference), lever.w[k] = 0.5 * (radii + difference);
       }
       for (std::size_t k = 0; k < count; k += 4) {
         Four rows[3][4];
@@ -183,7 +183,7 @@ class Bare {
   const std::vector<Sum>& sums() const { return sums_; }
 
  private:
-  /// Force and moments of a contact; the arms of a and b in w.
+  /// Force and moments of a contact; the radii of a and b in w.
   void add(const Pair& pair, const Four& force, const Four& lever) {
     Sum &a = sums_[pair.a], &b = sums_[pair.b];
     a.force -= force, b.force += force;
