@@ -1,5 +1,6 @@
-// Closed paths of two spheres leave no shear force: back and forth, around a square, around each other. For springs
-// whose stiffness grows with the overlap, the force left after a square depends on the order of its sides.
+// Closed paths of two spheres leave no shear force and yield no energy: back and forth, around a square, around each
+// other. For springs whose stiffness grows with the overlap, the force left after a square depends on the order of its
+// sides.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,6 +50,7 @@ constexpr double radius_a = 1e-3, radius_b = 2e-3, modulus = 1e8;
 struct Course {
   double most = 0, left = 0, radial = 0;  ///< maximum and final shear force [N]; final radial force [N]
   Vec3 force = Vec3::Zero();              ///< the last shear force on the second body
+  double work = 0;                        ///< of the force on the second body as it moves [J]
 };
 Course lead(const Way& way, double steps, const std::string& law = "linear-rolling") {
   static const PluginInfo info = [] {
@@ -65,15 +67,23 @@ Course lead(const Way& way, double steps, const std::string& law = "linear-rolli
   d["engines"]["leader"] = {{"type", "leader"}};
   d["time_step"]["value"] = 1;
   Trial t(d);
+  const auto on_second = [&](const Contact& c, const Vec3& force) -> Vec3 {
+    return t.world().ids()[c.a] == 0 ? force : Vec3(-force);
+  };
   Course course;
+  Vec3 before = t.position(1), push = Vec3::Zero();
+  if (const auto contacts = t.world().contacts(); !contacts.empty())
+    push = on_second(contacts.front(), contacts.front().force);
   for (int i = 0; i < steps; ++i) {
     t.step();
     const auto contacts = t.world().contacts();
     if (contacts.empty()) return course;
     const Contact& c = contacts.front();
-    const double sign = t.world().ids()[c.a] == 0 ? 1 : -1;
-    course.force = sign * (c.force - c.normal_force * c.normal);
+    course.force = on_second(c, c.force - c.normal_force * c.normal);
     course.left = course.force.norm(), course.most = std::max(course.most, course.left);
+    const Vec3 now = t.position(1), pushes = on_second(c, c.force);
+    course.work += 0.5 * (push + pushes).dot(now - before);
+    before = now, push = pushes;
   }
   return course;
 }
@@ -109,6 +119,30 @@ TEST(ClosedCycle, PressingShearingEasingShearingBackDoesNotRatchet) {
   verify("shear force left by pressing, shearing, easing, shearing back, over the largest", once.left / once.most, 0,
          1e-9, 1);
   verify("the same ten times", ten.left / ten.most, 0, 2e-8, 1);  // ten times the round-off
+}
+
+TEST(ClosedCycle, DeepContactsThatAreShearedAsTheirOverlapChangesYieldNoEnergy) {
+  // The overlap changes from 2.5 to 5.5 % of the sum of the radii and back, a quarter of a cycle before or after shear.
+  constexpr double sheared = 5e-3;
+  for (const char* law : {"linear-rolling", "linear-frictional"})
+    for (const double sense : {-1.0, 1.0}) {
+      const Course course = lead(
+          [&](std::uint32_t id, double share) {
+            const double angle = sheared * (1 - std::cos(2 * pi * share)),
+                         distance = (radius_a + radius_b) * (0.96 + sense * 0.015 * std::sin(2 * pi * share));
+            return id == 0 ? still() : Place{distance * Vec3(std::cos(angle), std::sin(angle), 0), 0};
+          },
+          400, law);
+      const std::string of = std::string(law) + (sense < 0 ? ", deeper while sheared" : ", less deep while sheared");
+      const double slip = 2 * sheared * (radius_a + radius_b),
+                   spring = 0.3 * 2 * modulus * radius_a * radius_b / (radius_a + radius_b);
+      verify("maximum shear force in a deep contact, " + of + " [N]", course.most, spring * slip / 0.96, 1e-3);
+      // The forces move even heavy bodies a little.
+      verify("shear force left by a cycle of a deep contact, " + of + ", over the largest", course.left / course.most,
+             0, 1e-8, 1);
+      verify("energy that a cycle of a deep contact yields, " + of + ", over that of its shear spring",
+             course.work / (0.5 * spring * slip * slip), 0, 1e-5, 1);
+    }
 }
 
 TEST(ClosedCycle, PairThatTurnsAsOneStoresNothing) {

@@ -100,8 +100,8 @@ Description rough(const std::string& law, double friction_angle) {
 }
 
 TEST(Energies, FrictionOfDeepContactsIsWhatMotionLoses) {
-  // Laws compute slip with the radii as arms, but the arms of forces are shorter: their work on bodies is less than
-  // slip times force, by 5 % at the start.
+  // Slip is computed with the radii as arms; the centres of bodies that overlap move less. The force on them is larger
+  // than that of the spring by as much, 5 % at the start.
   for (const std::string law : {"linear-rolling", "linear-frictional", "hertz-mindlin"})
     for (const double ratio : {1.0, 4.0}) {
       const double other = radius / ratio;

@@ -67,7 +67,7 @@ std::string at(const Material& m, const char* format, double value) {
 
 /// A ball in contact with a rigid body at rest.
 struct Course {
-  double depth = 0, closing, along, spin, shear = 0;  ///< m, m/s, m/s, rad/s; on the ball [N]
+  double depth = 0, closing, along, spin, shear = 0;  ///< m, m/s, m/s, rad/s; of the spring, on the ball [N]
   double pushed = 0;                                  ///< normal impulse before friction reached its limit [N s]
 };
 Course after(const Course& c, const Course& rate, double dt) {
@@ -79,7 +79,7 @@ Course after(const Course& c, const Course& rate, double dt) {
 struct Equations {
   Material material;
   double radius, reduced_radius;
-  double nearer;  ///< reduction of the arm of friction over the overlap: on a sphere R / (R + its radius)
+  double nearer;  ///< overlap over the sum of the radii, over depth over radius: on a sphere R / (R + its radius)
   double mass = material.mass(radius);
   double damping = 2 * std::sqrt(5.0 / 6) * damping_of_restitution(material.restitution);
 
@@ -88,16 +88,20 @@ struct Equations {
     const double stiffness = 2 * material.young / (1 - material.poisson * material.poisson) * contact(c);
     return std::max(0.0, 2.0 / 3 * stiffness * c.depth + damping * std::sqrt(stiffness * mass) * c.closing);
   }
+  /// Distance of the centres over the sum of the radii.
+  double branch(const Course& c) const { return 1 - nearer * c.depth / radius; }
+  /// Of the shear spring, by Coulomb's law for the force on the ball.
+  double limit(const Course& c) const { return material.friction * normal(c) * branch(c); }
   Course rate(const Course& c) const {
     const double shear_modulus = material.young / (2 * (2 - material.poisson) * (1 + material.poisson));
     // The limit also holds within a step.
-    const double limit = material.friction * normal(c), shear = std::clamp(c.shear, -limit, limit);
+    const double shear = std::clamp(c.shear, -limit(c), limit(c));
     const double eased = c.closing < 0 && c.depth > 0 ? 0.5 * c.closing / c.depth * c.shear : 0;
     return {.depth = c.closing,
             .closing = -normal(c) / mass,
-            .along = shear / mass,
-            .spin = -2.5 * (radius - nearer * c.depth) * shear / (mass * radius * radius),
-            .shear = eased - 8 * shear_modulus * contact(c) * (c.along - radius * c.spin)};
+            .along = shear / branch(c) / mass,
+            .spin = -2.5 * shear / (mass * radius),
+            .shear = eased - 8 * shear_modulus * contact(c) * (c.along / branch(c) - radius * c.spin)};
   }
   /// Fourth-order Runge–Kutta; shear above the friction limit slips.
   Course rebound(Course c) const {
@@ -107,9 +111,8 @@ struct Equations {
       const Course k1 = rate(c), k2 = rate(after(c, k1, dt / 2)), k3 = rate(after(c, k2, dt / 2)),
                    k4 = rate(after(c, k3, dt));
       c = after(after(after(after(c, k1, dt / 6), k2, dt / 3), k3, dt / 3), k4, dt / 6);
-      const double limit = material.friction * normal(c);
-      if (slides = slides || std::abs(c.shear) >= limit; !slides) c.pushed += dt * normal(c);
-      c.shear = std::clamp(c.shear, -limit, limit);
+      if (slides = slides || std::abs(c.shear) >= limit(c); !slides) c.pushed += dt * normal(c);
+      c.shear = std::clamp(c.shear, -limit(c), limit(c));
     } while (c.depth > 1e-6 * deepest || c.closing > 0);
     return c;
   }
@@ -334,7 +337,7 @@ TEST(ObliqueImpact, OppositeSpinsRollOnEachOtherAsChungAndOoisSeventhTestSays) {
 TEST(ObliqueImpact, LikeSpinsRubOnEachOtherAsOnAPlane) {
   Errors other("the second of two that spin alike, difference from the first over their speed before");
   for (const Material& m : of_sixth) {
-    const Equations equations{m, radius, radius, 0};
+    const Equations equations{m, radius, radius, 1};
     for (const double spin : {0.02, 0.2, 1.0, 4.0}) {
       constexpr double speed = 0.1 * normal;
       const auto out = off_each_other(m, speed, spin, spin);

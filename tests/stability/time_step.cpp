@@ -184,12 +184,15 @@ double limit_of_all_modes(const Trial& t) {
     const Mat3 along = c.normal * c.normal.transpose(), across = Mat3::Identity() - along;
     const Mat3 turn{
         {0, -c.normal.z(), c.normal.y()}, {c.normal.z(), 0, -c.normal.x()}, {-c.normal.y(), c.normal.x(), 0}};
-    // Relative displacement of the surfaces by displacements and rotations; the normal force rotates with the branch.
+    // Relative displacement of the centres and slip of the surfaces, with the branch extended to the sum of the radii;
+    // the normal force rotates with the branch.
+    const Mat3 extended = (a + b) / c.branch.norm() * Mat3::Identity();
     Eigen::Matrix<double, 3, 12> slip, apart;
-    slip << -Mat3::Identity(), a * turn, Mat3::Identity(), b * turn;
+    slip << -extended, a * turn, extended, b * turn;
     apart << -Mat3::Identity(), Mat3::Zero(), Mat3::Identity(), Mat3::Zero();
-    const Eigen::Matrix<double, 12, 12> one = slip.transpose() * (k.normal * along + k.shear * across) * slip -
-                                              apart.transpose() * (c.normal_force / c.branch.norm() * across) * apart;
+    const Eigen::Matrix<double, 12, 12> one =
+        slip.transpose() * (k.shear * across) * slip +
+        apart.transpose() * (k.normal * along - c.normal_force / c.branch.norm() * across) * apart;
     const Eigen::Index first[] = {6 * c.a, 6 * c.b};
     for (int row = 0; row < 2; ++row)
       for (int column = 0; column < 2; ++column)
