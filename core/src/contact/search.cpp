@@ -1,9 +1,12 @@
 #include "contact/search.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "grit/contact/lanes.hpp"
 
 namespace grit {
 namespace {
@@ -143,6 +146,33 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
     grid.body.resize(members[c].size());
     auto next = grid.start;
     for (const auto i : members[c]) grid.body[next[cell_of(i)]++] = i;
+    grid.place(bodies, skins);
+  }
+}
+
+void NeighbourSearch::Grid::place(const Bodies& bodies, const Skins& skins) {
+  for (auto* array : {&x, &y, &z, &reach}) array->assign(body.size() + lane_width<Lane>, 0);
+  for (std::size_t n = 0; n < body.size(); ++n) {
+    const Row& one = bodies.position[body[n]];
+    x[n] = one.x, y[n] = one.y, z[n] = one.z, reach[n] = one.w + skins.of_body(body[n]);
+  }
+}
+
+template <class Use>
+void NeighbourSearch::each_near(const Grid& grid, std::uint32_t begin, std::uint32_t end, const Row& centre,
+                                double reach, Use use) const {
+  constexpr std::size_t width = lane_width<Lane>;
+  // Centres are less than a period apart.
+  const auto apart = [&](int axis, const std::vector<double>& place, std::uint32_t n, double from) {
+    const Lane distance = abs(detail::load_lanes<Lane>(&place[n]) - Lane(from));
+    return period_[axis] > 0 ? min(distance, Lane(period_[axis]) - distance) : distance;
+  };
+  for (std::uint32_t n = begin; n < end; n += width) {
+    const Lane x = apart(0, grid.x, n, centre.x), y = apart(1, grid.y, n, centre.y), z = apart(2, grid.z, n, centre.z);
+    const Lane near = Lane(reach) + detail::load_lanes<Lane>(&grid.reach[n]);
+    std::uint32_t set = detail::bits(x * x + y * y + z * z < Lane(1 + 1e-12) * near * near);
+    if (end - n < width) set &= (1u << (end - n)) - 1;
+    for (; set != 0; set &= set - 1) use(n + static_cast<std::uint32_t>(std::countr_zero(set)));
   }
 }
 
@@ -158,6 +188,37 @@ void NeighbourSearch::find(const Bodies& bodies, std::uint32_t body, std::vector
   const Row own = position[body];
   const double centre[3] = {own.x, own.y, own.z}, skin = skins_.of_body(body) + skins_.reach();
   const std::uint32_t own_clump = bodies.clumps.clump_of(body);
+  const auto take = [&](std::uint32_t other) {
+    if (other <= body || (own_clump != no_clump && bodies.clumps.clump_of(other) == own_clump)) return;
+    const Row& b = position[other];
+    double d[3] = {b.x - own.x, b.y - own.y, b.z - own.z};
+    std::uint8_t image = 0;
+    if constexpr (skewed) {
+      std::array<int, 3> shift{};
+      for (int k = 2; k >= 0; --k) {
+        // Two bodies in the cell are no farther apart; half a period more is the side of an image.
+        const double most = k == 0 ? 2 : 1;
+        const double periods = std::clamp(std::nearbyint(d[k] * per_period_[k]), -most, most);
+        for (int j = 0; j <= k; ++j) d[j] -= periods * to_image_[static_cast<std::size_t>(k)][j];
+        shift[static_cast<std::size_t>(k)] = -static_cast<int>(periods);
+      }
+      image = image_with(shift);
+    } else if (any_periodic_) {
+      int place = 1;
+      for (int k = 0; k < 3; ++k, place *= 3) {
+        const double periods = std::nearbyint(d[k] * per_period_[k]);
+        d[k] -= periods * period_[k];
+        image = static_cast<std::uint8_t>(image + (periods > 0 ? 2 * place : periods < 0 ? place : 0));
+      }
+    }
+    const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    const double contact = own.w + b.w, near = contact + (skin + skins_.of_body(other));
+    if (square < near * near) {
+      const double acts = contact + skins_.reach();
+      const float gap = square < acts * acts ? 0 : rounded_down(std::sqrt(square) - acts);
+      candidates.push_back({body, other, gap, image});
+    }
+  };
   for (const Grid& grid : grids_) {
     if (grid.body.empty()) continue;
     const double reach = own.w + skin + grid.largest_reach;
@@ -191,42 +252,15 @@ void NeighbourSearch::find(const Bodies& bodies, std::uint32_t body, std::vector
           if (all_y) first[0] = 0, last[0] = grid.size[0] - 1;
         }
         const std::size_t line = (std::size_t(wrapped(2, cz)) * grid.size[1] + wrapped(1, cy)) * grid.size[0];
-        for (int cx = first[0]; cx <= last[0]; ++cx) {
-          const std::size_t cell = line + wrapped(0, cx);
-          const std::uint32_t begin = grid.start[cell], end = grid.start[cell + 1];
-          // Bodies of a cell are in ascending order: most cells before that of this body are skipped here.
-          if (begin == end || grid.body[end - 1] <= body) continue;
-          for (std::uint32_t n = begin; n < end; ++n) {
-            const std::uint32_t other = grid.body[n];
-            if (other <= body || (own_clump != no_clump && bodies.clumps.clump_of(other) == own_clump)) continue;
-            const Row& b = position[other];
-            double d[3] = {b.x - own.x, b.y - own.y, b.z - own.z};
-            std::uint8_t image = 0;
-            if constexpr (skewed) {
-              std::array<int, 3> shift{};
-              for (int k = 2; k >= 0; --k) {
-                // Two bodies in the cell are no farther apart; half a period more is the side of an image.
-                const double most = k == 0 ? 2 : 1;
-                const double periods = std::clamp(std::nearbyint(d[k] * per_period_[k]), -most, most);
-                for (int j = 0; j <= k; ++j) d[j] -= periods * to_image_[static_cast<std::size_t>(k)][j];
-                shift[static_cast<std::size_t>(k)] = -static_cast<int>(periods);
-              }
-              image = image_with(shift);
-            } else if (any_periodic_) {
-              int place = 1;
-              for (int k = 0; k < 3; ++k, place *= 3) {
-                const double periods = std::nearbyint(d[k] * per_period_[k]);
-                d[k] -= periods * period_[k];
-                image = static_cast<std::uint8_t>(image + (periods > 0 ? 2 * place : periods < 0 ? place : 0));
-              }
-            }
-            const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-            const double contact = own.w + b.w, near = contact + (skin + skins_.of_body(other));
-            if (square < near * near) {
-              const double acts = contact + skins_.reach();
-              const float gap = square < acts * acts ? 0 : rounded_down(std::sqrt(square) - acts);
-              candidates.push_back({body, other, gap, image});
-            }
+        // Cells in a row hold consecutive bodies, up to a side of the cell.
+        for (int cx = first[0]; cx <= last[0];) {
+          const int from = wrapped(0, cx), length = std::min(last[0] - cx, grid.size[0] - 1 - from) + 1;
+          const std::uint32_t begin = grid.start[line + from], end = grid.start[line + from + length];
+          cx += length;
+          if constexpr (skewed) {
+            for (std::uint32_t n = begin; n < end; ++n) take(grid.body[n]);
+          } else {
+            each_near(grid, begin, end, own, own.w + skin, [&](std::uint32_t n) { take(grid.body[n]); });
           }
         }
       }

@@ -62,14 +62,21 @@ class NeighbourSearch {
     Vec3 origin, per_length;                       ///< cell index = (x − origin) · per_length
     std::array<int, 3> size{1, 1, 1};
     std::vector<std::uint32_t> start, body;  ///< bodies of cell c: body[start[c]] … body[start[c + 1]]
+    std::vector<double> x, y, z, reach;      ///< of `body`: centres, and radii with skins [m]; padded by a register
 
     int index(int axis, double x) const;
+    void place(const Bodies& bodies, const Skins& skins);
   };
   template <bool skewed>
   void find(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const;
+  /// Calls use(n) for bodies n of `begin` … `end` of the grid whose centre, or an image of it, is nearer to `centre`
+  /// than the sum of their reach and `reach`, and perhaps for some that are farther by a rounding error.
+  template <class Use>
+  void each_near(const Grid& grid, std::uint32_t begin, std::uint32_t end, const Row& centre, double reach,
+                 Use use) const;
 
   Cell cell_;
-  Vec3 period_, per_period_;
+  Vec3 period_, per_period_;      // m, 1/m; 0 along axes that are not periodic
   std::array<Vec3, 3> to_image_;  // Cell::period
   bool any_periodic_ = false;
   Skins skins_;
