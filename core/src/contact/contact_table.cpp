@@ -1,7 +1,9 @@
 #include "contact/contact_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -64,7 +66,8 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   former_start.front() = 0;
   give_back(now);
 
-  // Candidates, chunk by chunk: first those within the chunk, then those across; of each kind the nearest first.
+  // Candidates, chunk by chunk: first those within the chunk, then those across; of each kind first those that touch,
+  // then the others by their gap, to within a 64th of the largest.
   const std::size_t chunk_count = chunks_of(count);
   found_.resize(chunk_count), within_.resize(chunk_count);
   team.each(chunk_count, [&](std::size_t chunk) {
@@ -72,14 +75,21 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
     found.clear();
     const std::size_t first = chunk * chunk_bodies, last = std::min(count, first + chunk_bodies);
     for (std::size_t i = first; i < last; ++i) search.neighbours(bodies, static_cast<std::uint32_t>(i), found);
-    const auto nearer = [](const Candidate& c, const Candidate& d) { return c.gap < d.gap; };
-    const auto across =
-        std::stable_partition(found.begin(), found.end(), [=](const Candidate& c) { return c.b < last; });
-    std::stable_sort(found.begin(), across, nearer), std::stable_sort(across, found.end(), nearer);
-    within_[chunk] = static_cast<std::size_t>(across - found.begin());
-    found_[chunk].reserve(found.size());
+    constexpr std::size_t steps = 64, kinds = 1 + steps;
+    float widest = std::numeric_limits<float>::min();
+    for (const Candidate& c : found) widest = std::max(widest, c.gap);
+    const auto place = [&](const Candidate& c) {
+      const std::size_t step =
+          c.touching() ? 0 : 1 + std::min(steps - 1, static_cast<std::size_t>(c.gap / widest * steps));
+      return c.b < last ? step : kinds + step;
+    };
+    std::array<std::size_t, 2 * kinds + 1> next{};
+    for (const Candidate& c : found) ++next[place(c) + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    within_[chunk] = next[kinds];
+    found_[chunk].resize(found.size());
     for (const Candidate& c : found)
-      found_[chunk].push_back({c.b, c.gap, static_cast<std::uint8_t>(c.a - first), c.image});
+      found_[chunk][next[place(c)]++] = {c.b, c.gap, static_cast<std::uint8_t>(c.a - first), c.image};
   });
   chunks_.resize(chunk_count);
   std::uint32_t blocks = 0;
@@ -114,8 +124,9 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
       const Found& c = found_[chunk][n];
       const auto a = static_cast<std::uint32_t>(chunk * chunk_bodies + c.a);
       a_[slot] = a, b_[slot] = c.b, near_[slot] = c.touching();
+      float& asleep_until = asleep_until_[slot / block_size];
+      asleep_until = slot % block_size == 0 ? c.gap : std::min(asleep_until, c.gap);
       if (slot % block_size == 0) {
-        asleep_until_[slot / block_size] = c.gap;
         Blocks& own = n < within_[chunk] ? chunks_[chunk].within : chunks_[chunk].across;
         if (c.touching()) own.near = static_cast<std::uint32_t>(slot / block_size + 1);
       }
