@@ -68,7 +68,7 @@ TEST_F(TimeStep, PrescribedIsComparedWithNewContactsUnlessItMayBeUnstable) {
   set();
   const double before = control_.critical();
   state_.bodies.velocity[0].w *= 4;  // one body is lighter, both have moved
-  passes_.chunks()[0].motion.largest_speed = 0.1 * radius;
+  passes_.chunks()[0].motion.largest_speed = 0.2 * radius;
   state_.lists.advance(1, 0, passes_);
   control_.follow(state_, view_, bounds_, passes_);
   EXPECT_EQ(control_.critical(), before);
