@@ -44,7 +44,7 @@ Description cell() {
 /// The same under prescribed stresses, of which one changes, then at a strain rate along one axis.
 Description cell_under_stress() {
   Description d = cell();
-  d["stages"] = {stage("fast", steps(400)), stage("slow", steps(300))};
+  d["stages"] = {stage("fast", steps(600)), stage("slow", steps(300))};
   d["domain"].erase("strain_rate");
   d["domain"]["servo"] = {
       {"stress", {{"xx", 1e4}, {"yy", 1e4}, {"zz", 1e4}}}, {"max_strain_rate", 50}, {"interval", 3}};

@@ -29,7 +29,7 @@ Description boxed() {
 }
 
 /// 2744 grains without a wall, compressed along x and y at this rate [1/s], stretched along z.
-Description periodic(double rate = 20) {
+Description periodic(double rate = 18) {
   const double spacing = 1e-3;
   Description d = description("linear-rolling", sand, jumble({14, 14, 14}, spacing, 0.02, 6));
   d["domain"] = {{"low", {0, 0, 0}},
