@@ -195,15 +195,16 @@ Plane plane(double roughness) {
 }
 
 // Grabowski (2024), on walls of R_n = 0.01, 0.25 and 1 of a silo of 200 000 grains at e0 = 0.60: T/G = 0.12, 0.22 and
-// 0.25 at rest, φ_w = 18°, 30° and 36°. With so few grains, T of the last two differs significantly only if walls slip.
-// If friction is raised to its final value under the full stress of the filling, φ_w is 10° at R_n = 1.
+// 0.25 at rest, φ_w = 18°, 30° and 36°. With so few grains, the last two differ significantly only if walls slip: at
+// rest φ_w is 28° and 34° in the mean of eight fillings, which scatter by 3° and 4°. If friction is raised to its final
+// value under the full stress of the filling, φ_w is 10° at R_n = 1.
 TEST(PlaneSilo, RougherWallsCarryMore) {
   const Plane smooth = plane(0.01), rough = plane(0.25), very_rough = plane(1);
   EXPECT_GT(smooth.at_rest, 0);
   EXPECT_LT(smooth.at_rest, very_rough.at_rest);
   EXPECT_GT(smooth.friction_at_rest, 13);
   EXPECT_GT(rough.friction_at_rest, smooth.friction_at_rest + 5);
-  EXPECT_GT(very_rough.friction_at_rest, rough.friction_at_rest + 3);
+  EXPECT_GT(very_rough.friction_at_rest, smooth.friction_at_rest + 8);
   for (const Plane& silo : {smooth, rough, very_rough}) EXPECT_NEAR(silo.void_ratio, 0.6, 0.03);
   EXPECT_NEAR(smooth.friction_in_motion, 18, 0.5) << "that of the wall";
   EXPECT_GT(rough.friction_in_motion, smooth.friction_in_motion + 5);
