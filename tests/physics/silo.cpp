@@ -167,7 +167,7 @@ struct Plane {
   double friction_in_motion = 0;  ///< φ_w while the bottom moves down [deg]
 };
 Plane plane(double roughness) {
-  constexpr int fillings = 3;
+  constexpr int fillings = 8;
   Plane mean;
   for (int seed = 1; seed <= fillings; ++seed) {
     Curves silo;
@@ -204,7 +204,7 @@ TEST(PlaneSilo, RougherWallsCarryMore) {
   EXPECT_LT(smooth.at_rest, very_rough.at_rest);
   EXPECT_GT(smooth.friction_at_rest, 13);
   EXPECT_GT(rough.friction_at_rest, smooth.friction_at_rest + 5);
-  EXPECT_GT(very_rough.friction_at_rest, smooth.friction_at_rest + 8);
+  EXPECT_GT(very_rough.friction_at_rest, rough.friction_at_rest + 3);
   for (const Plane& silo : {smooth, rough, very_rough}) EXPECT_NEAR(silo.void_ratio, 0.6, 0.03);
   EXPECT_NEAR(smooth.friction_in_motion, 18, 0.5) << "that of the wall";
   EXPECT_GT(rough.friction_in_motion, smooth.friction_in_motion + 5);
