@@ -55,7 +55,9 @@ TEST(Boundaries, BodiesLeaveThroughOpenSidesAlone) {
 TEST(Boundaries, LeavingBodiesTakeTheirEnergyAlong) {
   State state = two_spheres(0.004);
   set_velocity(state, 1, {0, 3, 4});
-  const auto left = leaving(state.bodies, {false, true}, 0.25, [](std::size_t) { return Vec3(0, 0, -10); });
+  const MotionSettings motion{.gravity = Vec3(0, 0, -10)};
+  const auto left =
+      leaving(state.bodies, {false, true}, 0.25, [&](std::size_t) -> const MotionSettings& { return motion; });
   ASSERT_EQ(left.size(), 1u);
   EXPECT_EQ(left[0].departure.id, 1u);
   EXPECT_EQ(left[0].departure.time, 0.25);

@@ -149,14 +149,15 @@ inline constexpr std::uint32_t no_clump = ~0u;
 /// A rigid clump of spheres at one instant.
 struct ClumpView {
   std::uint32_t id;
-  Vec3 centre;          ///< of mass [m]
-  Vec3 velocity, spin;  ///< half a step before time() [m/s, rad/s]
-  Vec3 momentum;        ///< angular momentum about the centre, half a step before time() [kg m²/s]
-  Vec3 force, moment;   ///< net, of gravity and contacts, about the centre, before damping [N, N m]
-  double radius;        ///< of the enclosing sphere [m]
-  double mass;          ///< kg
-  Mat3 axes;            ///< columns: principal axes
-  Vec3 inertia;         ///< principal moments of inertia [kg m²]
+  Vec3 centre;           ///< of mass [m]
+  Vec3 velocity, spin;   ///< half a step before time() [m/s, rad/s]
+  Vec3 momentum;         ///< angular momentum about the centre, half a step before time() [kg m²/s]
+  Vec3 force, moment;    ///< net, of gravity and contacts, about the centre, before damping [N, N m]
+  double radius;         ///< of the enclosing sphere [m]
+  double mass;           ///< kg
+  double unscaled_mass;  ///< without density scaling [kg]
+  Mat3 axes;             ///< columns: principal axes
+  Vec3 inertia;          ///< principal moments of inertia [kg m²]
 };
 
 /// Bodies from this id on, up to the next entry, belong to the group of this name in the description.
@@ -174,7 +175,7 @@ struct Departure {
   std::uint32_t id;
   std::uint8_t material;
   double time;    ///< when it was found outside [s]
-  double mass;    ///< kg
+  double mass;    ///< without density scaling [kg]
   Vec3 position;  ///< at that time [m]
 };
 
@@ -227,6 +228,8 @@ class World {
   virtual std::span<const Vec3> arms() const { return {}; }
   /// Fraction of each body's volume that counts, as bodies of a clump overlap; empty if all are 1.
   virtual std::span<const double> volume_fractions() const { return {}; }
+  /// Mass without density scaling over mass of each body; empty if all are 1.
+  virtual std::span<const double> unscaled_shares() const { return {}; }
   /// 1 for bodies whose translation engines hold or prescribe along all axes, 0 for others; empty if there are none.
   virtual std::span<const std::uint8_t> held() const { return {}; }
   /// Bodies that left the domain, in order of time.

@@ -161,21 +161,6 @@ void check_materials_of_walls(const SceneDescription& scene, const Complain& com
   for (const auto& [name, wall] : scene.walls) known.check("walls/" + name + "/material", wall.material);
 }
 
-void check_weight(const SceneDescription& scene, const Complain& complain) {
-  const auto is_scaled = [](const auto& group) { return group.second.scaled_below() > 0; };
-  if (std::ranges::none_of(scene.bodies, is_scaled)) return;
-  const auto has_weight = [&](const std::string& group) {
-    MotionSettings settings;
-    for (const auto& [name, engine] : scene.engines)
-      if (engine.acts_on(group)) engine.engine.make()->settings(settings);
-    return !settings.gravity.isZero(0.0);
-  };
-  for (const auto& [name, group] : scene.bodies)
-    if (group.scaled_below() > 0 && has_weight(name))
-      complain("bodies/" + name + "/density_scaling", "density scaling together with gravity",
-               "only one of them, as weight would grow with the scaled mass; remove one");
-}
-
 /// Reports groups of bodies that do not exist.
 void check_groups(const SceneDescription& scene, const Complain& complain) {
   const References known("group", keys(scene.bodies), complain);
@@ -466,7 +451,7 @@ void BodiesDescription::declare(Parameters& p) {
       .at_least(0)
       .doc("maximum overlap with existing walls and bodies when they appear in a stage, over the smaller radius");
   p.add("density_scaling", density_scaling)
-      .doc("differential density scaling, for a longer time step; not allowed with gravity");
+      .doc("differential density scaling, for a longer time step; see scaled_weight of gravity");
   p.add("source", source).required().doc("positions and radii");
 }
 
@@ -1174,7 +1159,6 @@ void SceneDescription::check_together(const Complain& complain) const {
   check_number_of_materials(*this, complain);
   check_interfaces(*this, complain);
   check_materials_of_bodies(*this, complain);
-  check_weight(*this, complain);
   check_motions(*this, complain);
   check_materials_of_walls(*this, complain);
   check_groups(*this, complain);
@@ -1215,7 +1199,6 @@ void SceneDescription::declare(Parameters& p) {
   p.check_names([this](const Complain& complain) { check_number_of_materials(*this, complain); });
   p.check_names([this](const Complain& complain) { check_interfaces(*this, complain); });
   p.check_names([this](const Complain& complain) { check_materials_of_bodies(*this, complain); });
-  p.check([this](const Complain& complain) { check_weight(*this, complain); }, {"bodies", "engines"});
   p.check([this](const Complain& complain) { check_motions(*this, complain); }, {"bodies", "engines"});
   p.check(
       [this](const Complain& complain) {

@@ -92,13 +92,19 @@ void change_periods(Bodies& bodies, const Eigen::Matrix3i& of_old) {
 }
 
 std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leaves, double time,
-                             const std::function<Vec3(std::size_t body)>& gravity) {
+                             const std::function<const MotionSettings&(std::size_t body)>& motion_of) {
   std::vector<Leaving> all;
-  const auto add = [&](std::size_t i, const Vec3& x, const Vec3& v, double inverse_mass, double turning) {
-    all.push_back(
-        {{.id = bodies.id[i], .material = bodies.material[i], .time = time, .mass = 1 / inverse_mass, .position = x},
-         0.5 / inverse_mass * v.squaredNorm() + turning,
-         -gravity(i).dot(x) / inverse_mass});
+  const auto add = [&](std::size_t i, double radius, const Vec3& x, const Vec3& v, double inverse_mass,
+                       double turning) {
+    const MotionSettings& motion = motion_of(i);
+    all.push_back({{.id = bodies.id[i],
+                    .material = bodies.material[i],
+                    .time = time,
+                    .mass = motion.unscaled_share(radius) / inverse_mass,
+                    .position = x},
+                   1 / inverse_mass,
+                   0.5 / inverse_mass * v.squaredNorm() + turning,
+                   -motion.gravity_on(radius).dot(x) / inverse_mass});
   };
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < bodies.count(); ++i)
@@ -107,10 +113,10 @@ std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leav
   for (const std::size_t i : indices) {
     const std::uint32_t c = bodies.clumps.clump_of(i);
     if (c == no_clump) {
-      add(i, xyz(bodies.position[i]), xyz(bodies.velocity[i]), bodies.velocity[i].w,
+      add(i, bodies.position[i].w, xyz(bodies.position[i]), xyz(bodies.velocity[i]), bodies.velocity[i].w,
           0.5 / bodies.spin[i].w * xyz(bodies.spin[i]).squaredNorm());
     } else if (const Clump& clump = bodies.clumps.clump[c]; bodies.clumps.spheres[clump.first] == i) {
-      add(i, clump.centre, clump.velocity, clump.inverse_mass, 0.5 * clump.momentum.dot(clump.spin));
+      add(i, clump.radius, clump.centre, clump.velocity, clump.inverse_mass, 0.5 * clump.momentum.dot(clump.spin));
     }
   }
   return all;

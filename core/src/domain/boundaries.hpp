@@ -7,6 +7,7 @@
 
 #include "bodies/bodies.hpp"
 #include "domain/deforming_cell.hpp"
+#include "grit/engine.hpp"
 #include "grit/world.hpp"
 
 namespace grit {
@@ -28,11 +29,12 @@ void change_periods(Bodies& bodies, const Eigen::Matrix3i& of_old);
 /// A body that leaves, and its energy [J].
 struct Leaving {
   Departure departure;
+  double mass;       ///< with density scaling [kg]
   double kinetic;    ///< of translation and rotation
   double potential;  ///< relative to the origin
 };
 /// In order of ids; a clump leaves as a whole, with the id of its first sphere.
 std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leaves, double time,
-                             const std::function<Vec3(std::size_t body)>& gravity);
+                             const std::function<const MotionSettings&(std::size_t body)>& motion_of);
 
 }  // namespace grit

@@ -51,11 +51,13 @@ class Weights {
   Weights(const Bodies& arriving, const State& state)
       : arriving_(arriving), state_(state), group_(groups_of(arriving, state.settings.groups)) {}
 
-  const Vec3& gravity(std::size_t body) const { return state_.settings.motion_of(group_[body]).gravity; }
+  Vec3 gravity(std::size_t body, double radius) const {
+    return state_.settings.motion_of(group_[body]).gravity_on(radius);
+  }
   /// Change of velocity in half a step.
-  Vec3 fall(std::size_t body) const {
+  Vec3 fall(std::size_t body, double radius) const {
     const MotionSettings& motion = state_.settings.motion_of(group_[body]);
-    return 0.5 * state_.time.previous_dt * motion.free_translation().cwiseProduct(motion.gravity);
+    return 0.5 * state_.time.previous_dt * motion.free_translation().cwiseProduct(motion.gravity_on(radius));
   }
   /// A sphere of a clump.
   std::size_t body_of(const Clump& clump) const { return arriving_.clumps.spheres[clump.first]; }
@@ -71,30 +73,33 @@ class Weights {
 EnteredEnergy energy_of(const Bodies& arriving, const State& state) {
   const Weights weights(arriving, state);
   EnteredEnergy all;
-  const auto add = [&](std::size_t body, const Vec3& centre, const Vec3& velocity, double inverse_mass) {
-    all.kinetic += 0.5 * (velocity + weights.fall(body)).squaredNorm() / inverse_mass;
-    all.potential -= weights.gravity(body).dot(centre) / inverse_mass;
+  const auto add = [&](std::size_t body, double radius, const Vec3& centre, const Vec3& velocity, double inverse_mass) {
+    all.kinetic += 0.5 * (velocity + weights.fall(body, radius)).squaredNorm() / inverse_mass;
+    all.potential -= weights.gravity(body, radius).dot(centre) / inverse_mass;
   };
   for (std::size_t i = 0; i < arriving.count(); ++i)
     if (arriving.clumps.clump_of(i) == no_clump)
-      add(i, xyz(arriving.position[i]), xyz(arriving.velocity[i]), arriving.velocity[i].w);
+      add(i, arriving.position[i].w, xyz(arriving.position[i]), xyz(arriving.velocity[i]), arriving.velocity[i].w);
   for (const Clump& clump : arriving.clumps.clump)
-    add(weights.body_of(clump), clump.centre, clump.velocity, clump.inverse_mass);
+    add(weights.body_of(clump), clump.radius, clump.centre, clump.velocity, clump.inverse_mass);
   return all;
 }
 
 void match_velocities(Bodies& arriving, const State& state) {
   const Weights weights(arriving, state);
-  const auto change = [&](std::size_t body, const Vec3& place) -> Vec3 {
-    const Vec3 fall = weights.fall(body);
+  const auto change = [&](std::size_t body, double radius, const Vec3& place) -> Vec3 {
+    const Vec3 fall = weights.fall(body, radius);
     return state.cell.deforms() ? Vec3(state.cell.mean_flow(place) - fall) : Vec3(-fall);
   };
   for (std::size_t i = 0; i < arriving.count(); ++i) {
     const std::uint32_t c = arriving.clumps.clump_of(i);
-    const Vec3 v = change(i, c == no_clump ? xyz(arriving.position[i]) : arriving.clumps.clump[c].centre);
+    const Clump* const clump = c == no_clump ? nullptr : &arriving.clumps.clump[c];
+    const Vec3 v = clump == nullptr ? change(i, arriving.position[i].w, xyz(arriving.position[i]))
+                                    : change(i, clump->radius, clump->centre);
     arriving.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
   }
-  for (Clump& clump : arriving.clumps.clump) clump.velocity += change(weights.body_of(clump), clump.centre);
+  for (Clump& clump : arriving.clumps.clump)
+    clump.velocity += change(weights.body_of(clump), clump.radius, clump.centre);
 }
 
 void check_arrivals(const State& state, const World& world, const std::vector<Newcomers::Group>& groups) {

@@ -76,12 +76,14 @@ double EnergyBalance::gravitational() const {
   return passes_.sum([&](std::size_t chunk) {
     const ChunkRange clumps(chunk, bodies.clumps.clump.size()), range(chunk, bodies.count());
     double energy = 0;
-    for (std::size_t c = clumps.first; c < clumps.last; ++c)
-      energy -= state_.motion_of(bodies.clumps.clump[c]).gravity.dot(bodies.clumps.clump[c].centre) /
-                bodies.clumps.clump[c].inverse_mass;
+    for (std::size_t c = clumps.first; c < clumps.last; ++c) {
+      const Clump& clump = bodies.clumps.clump[c];
+      energy -= state_.motion_of(clump).gravity_on(clump.radius).dot(clump.centre) / clump.inverse_mass;
+    }
     for (std::size_t i = range.first; i < range.last; ++i)
       if (bodies.clumps.clump_of(i) == no_clump)
-        energy -= state_.motion_of(i).gravity.dot(xyz(bodies.position[i])) / bodies.velocity[i].w;
+        energy -=
+            state_.motion_of(i).gravity_on(bodies.position[i].w).dot(xyz(bodies.position[i])) / bodies.velocity[i].w;
     return energy;
   });
 }
@@ -108,7 +110,7 @@ double EnergyBalance::power_of_engines(std::size_t chunk) const {
     if (bodies.clumps.clump_of(i) != no_clump) continue;
     const MotionSettings& motion = state_.motion_of(i);
     if (!motion.holds()) continue;
-    const Vec3 force = xyz(state_.sum[i].force) + motion.gravity / bodies.velocity[i].w;
+    const Vec3 force = xyz(state_.sum[i].force) + motion.gravity_on(bodies.position[i].w) / bodies.velocity[i].w;
     power -= motion.constrained_translation().cwiseProduct(force).dot(xyz(bodies.velocity[i])) +
              motion.constrained_rotation().cwiseProduct(xyz(state_.sum[i].moment)).dot(xyz(bodies.spin[i]));
   }
@@ -117,7 +119,7 @@ double EnergyBalance::power_of_engines(std::size_t chunk) const {
     const MotionSettings& motion = state_.motion_of(clump);
     if (!motion.holds()) continue;
     const ClumpLoad load = load_of(clump, bodies, state_.sum.data());
-    const Vec3 force = load.force + motion.gravity / clump.inverse_mass;
+    const Vec3 force = load.force + motion.gravity_on(clump.radius) / clump.inverse_mass;
     power -= motion.constrained_translation().cwiseProduct(force).dot(clump.velocity) +
              motion.constrained_rotation().cwiseProduct(load.moment).dot(clump.spin);
   }

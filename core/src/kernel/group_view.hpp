@@ -37,6 +37,7 @@ class GroupView final : public World {
   std::span<const double> volume_fractions() const override {
     return taken(volume_fractions_, &World::volume_fractions);
   }
+  std::span<const double> unscaled_shares() const override { return taken(unscaled_shares_, &World::unscaled_shares); }
   std::span<const std::uint8_t> held() const override { return taken(held_, &World::held); }
   std::span<const Departure> departures() const override;
   std::span<const Row> forces() const override { return taken(forces_, &World::forces); }
@@ -99,7 +100,7 @@ class GroupView final : public World {
   mutable Column<Row> positions_, velocities_, spins_, forces_, moments_;
   mutable Column<std::uint8_t> materials_, held_;
   mutable Column<Vec3> rotations_, displacements_, arms_;
-  mutable Column<double> volume_fractions_, averages_;  // the mean diameter and the solid density
+  mutable Column<double> volume_fractions_, unscaled_shares_, averages_;  // the mean diameter and the solid density
   mutable Column<ClumpView> clumps_;
   mutable Column<Departure> departures_;
   mutable Column<Contact> contacts_, wall_contacts_;

@@ -74,10 +74,10 @@ void Stepper::rebuild() {
   if (state_.lists.sorts() || some_leave || !arrivals_.empty()) {
     order = spatial_order(bodies, cell.cell());
     if (some_leave) {
-      const auto gravity = [this](std::size_t body) { return state_.motion_of(body).gravity; };
-      for (Leaving& one : leaving(bodies, wrapped.leaves, state_.time.time, gravity)) {
+      const auto motion_of = [this](std::size_t body) -> const MotionSettings& { return state_.motion_of(body); };
+      for (Leaving& one : leaving(bodies, wrapped.leaves, state_.time.time, motion_of)) {
         state_.departures.push_back(one.departure);
-        state_.discharged_mass += one.departure.mass;
+        state_.discharged_mass += one.mass;
         balance_.add_settings(-one.kinetic);
         guard_.discharged(one.kinetic + one.potential);
       }

@@ -25,7 +25,8 @@ void WorldView::find_net_forces(std::size_t chunk) const {
   for (std::size_t i = range.first; i < range.last; ++i) {
     const MotionSettings& motion = state_.motion_of(i);
     const bool single = bodies.clumps.clump_of(i) == no_clump;
-    const Vec3 weight = single ? Vec3(motion.gravity / bodies.velocity[i].w) : Vec3(Vec3::Zero());
+    const Vec3 weight =
+        single ? Vec3(motion.gravity_on(bodies.position[i].w) / bodies.velocity[i].w) : Vec3(Vec3::Zero());
     net_force_[i] = state_.sum[i].force, net_moment_[i] = state_.sum[i].moment;
     net_force_[i] += Row{weight.x(), weight.y(), weight.z(), 0};
     net_force_[i].w = net_moment_[i].w = 0;
@@ -49,6 +50,17 @@ std::span<const Row> WorldView::forces() const {
 std::span<const Row> WorldView::moments() const {
   static_cast<void>(forces());
   return net_moment_;
+}
+
+std::span<const double> WorldView::unscaled_shares() const {
+  unscaled_shares_.clear();
+  if (!state_.settings.any_motion([](const MotionSettings& motion) { return motion.scaled_radius > 0; })) return {};
+  for (std::size_t i = 0; i < count(); ++i) {
+    const std::uint32_t c = state_.bodies.clumps.clump_of(i);
+    const double radius = c == no_clump ? state_.bodies.position[i].w : state_.bodies.clumps.clump[c].radius;
+    unscaled_shares_.push_back(state_.motion_of(i).unscaled_share(radius));
+  }
+  return unscaled_shares_;
 }
 
 std::span<const Vec3> WorldView::displacements() const {
@@ -96,18 +108,19 @@ std::span<const ClumpView> WorldView::clumps() const {
   for (const Clump& clump : bodies.clumps.clump) {
     const ClumpLoad load = load_of(clump, bodies, state_.sum.data());
     const MotionSettings& motion = state_.motion_of(clump);
-    clumps_.push_back(
-        {.id = clump.id,
-         .centre = clump.centre,
-         .velocity = clump.velocity,
-         .spin = clump.spin,
-         .momentum = clump.momentum,
-         .force = motion.free_translation().cwiseProduct(load.force + motion.gravity / clump.inverse_mass),
-         .moment = motion.free_rotation().cwiseProduct(load.moment),
-         .radius = clump.radius,
-         .mass = 1 / clump.inverse_mass,
-         .axes = clump.axes,
-         .inertia = clump.inertia});
+    clumps_.push_back({.id = clump.id,
+                       .centre = clump.centre,
+                       .velocity = clump.velocity,
+                       .spin = clump.spin,
+                       .momentum = clump.momentum,
+                       .force = motion.free_translation().cwiseProduct(load.force + motion.gravity_on(clump.radius) /
+                                                                                        clump.inverse_mass),
+                       .moment = motion.free_rotation().cwiseProduct(load.moment),
+                       .radius = clump.radius,
+                       .mass = 1 / clump.inverse_mass,
+                       .unscaled_mass = motion.unscaled_share(clump.radius) / clump.inverse_mass,
+                       .axes = clump.axes,
+                       .inertia = clump.inertia});
   }
   return clumps_;
 }

@@ -40,6 +40,7 @@ class WorldView final : public World {
   std::span<const ClumpView> clumps() const override;
   std::span<const Vec3> arms() const override;
   std::span<const double> volume_fractions() const override { return state_.bodies.clumps.volume_fraction; }
+  std::span<const double> unscaled_shares() const override;
   std::span<const std::uint8_t> held() const override;
   std::span<const Departure> departures() const override { return state_.departures; }
   std::span<const Row> forces() const override;
@@ -71,6 +72,7 @@ class WorldView final : public World {
   mutable std::vector<std::uint8_t> held_;
   mutable std::vector<ClumpView> clumps_;
   mutable std::vector<Vec3> arms_, displacements_;
+  mutable std::vector<double> unscaled_shares_;
   mutable std::vector<Contact> contacts_, wall_contacts_;
   mutable std::vector<WallView> walls_;
   // Step at which each was computed.

@@ -15,12 +15,19 @@ class Gravity final : public Engine {
  public:
   void declare(Parameters& p) override {
     p.add("acceleration", acceleration_).unit("m/s^2").symbol("g").doc("acceleration of every body");
+    p.add("scaled_weight", scaled_weight_)
+        .doc(
+            "with density scaling: true: gravity acts on the scaled mass, so that all bodies fall alike; false: on the "
+            "mass without scaling, so that weights are unchanged and small bodies fall more slowly");
   }
   Phase phase() const override { return Phase::settings; }
-  void settings(MotionSettings& settings) const override { settings.gravity += acceleration_; }
+  void settings(MotionSettings& settings) const override {
+    settings.gravity += acceleration_, settings.scaled_weight = settings.scaled_weight || scaled_weight_;
+  }
 
  private:
   Vec3 acceleration_{0, 0, -9.81};
+  bool scaled_weight_ = false;
 };
 
 class LocalDamping final : public Engine {

@@ -164,18 +164,20 @@ Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const Bo
     const MotionSettings& settings = step.of(bodies.clumps.spheres[clump.first]);
     if (settings.prescribed) {
       motion.prescribed += move_rigidly(RigidStep(*settings.prescribed, step.drift), step.drift, clump);
-      motion.fallen += step.drift * settings.gravity.dot(clump.velocity) / clump.inverse_mass;
-      for (std::uint32_t k = clump.first; k < clump.last; ++k) carry(bodies.clumps.spheres[k], clump, bodies, step, skewed);
+      motion.fallen += step.drift * settings.gravity_on(clump.radius).dot(clump.velocity) / clump.inverse_mass;
+      for (std::uint32_t k = clump.first; k < clump.last; ++k)
+        carry(bodies.clumps.spheres[k], clump, bodies, step, skewed);
       continue;
     }
-    const Vec3 free = settings.free_translation(), turns = settings.free_rotation();
+    const Vec3 free = settings.free_translation(), turns = settings.free_rotation(),
+               gravity = settings.gravity_on(clump.radius);
     const ClumpLoad load = load_of(clump, bodies, sum);
     const Vec3 before = clump.velocity;
     const Vec3 carried = shears ? Vec3(step.flowed * flow_at(before, step, true))
                                 : Vec3((step.flowed * step.strain_rate).cwiseProduct(before));
     clump.velocity += carried;
     const Vec3 flow = flow_at(clump.centre - step.centre, step, shears);
-    Vec3 push = step.kick * free.cwiseProduct(clump.inverse_mass * load.force + settings.gravity);
+    Vec3 push = step.kick * free.cwiseProduct(clump.inverse_mass * load.force + gravity);
     Vec3 twist = step.kick * turns.cwiseProduct(load.moment);
     if (settings.local_damping > 0) {
       const Vec3 pushed = damped(push, clump.velocity - flow, settings.local_damping);
@@ -190,7 +192,7 @@ Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const Bo
     clump.velocity += push, clump.momentum += twist;
     clump.centre += step.drift * clump.velocity;
     if (step.energies) {
-      motion.fallen += step.drift * settings.gravity.dot(clump.velocity) / clump.inverse_mass;
+      motion.fallen += step.drift * gravity.dot(clump.velocity) / clump.inverse_mass;
       motion.carried += 0.5 * carried.dot(before + clump.velocity) / clump.inverse_mass;
     }
     turn_freely(clump, step.drift);

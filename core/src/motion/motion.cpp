@@ -37,11 +37,18 @@ void turn_on(Vec3* turned, std::size_t body, const Quad& spin, const Quad& drift
 
 double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+/// Share of a body's mass on which gravity acts; see MotionSettings::gravity_on().
+double weighing_share(double radius, double scaled_radius) {
+  if (!(radius < scaled_radius)) return 1;
+  const double ratio = radius / scaled_radius;
+  return ratio * ratio * ratio;
+}
+
 /// What a step does to bodies with the same settings. The fourth number of a row (radius, 1/mass, 1/inertia) is
 /// unchanged.
 struct Kick {
   Quad kick, turn_kick, fall, weight;
-  double damping;
+  double damping, scaled_radius;
   std::optional<RigidStep> prescribed;
 
   Kick(const MotionSettings& settings, const MotionStep& step)
@@ -49,7 +56,8 @@ struct Kick {
         turn_kick(step.kick * quad(settings.free_rotation())),
         fall(quad(settings.free_translation()) * quad(Vec3(settings.gravity * step.kick))),
         weight(quad(settings.gravity)),
-        damping(settings.local_damping) {
+        damping(settings.local_damping),
+        scaled_radius(settings.scaled_weight ? 0 : settings.scaled_radius) {
     if (settings.prescribed) prescribed.emplace(*settings.prescribed, step.drift);
   }
 };
@@ -78,7 +86,7 @@ template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
   // Local copies, as of the pointers below: for the compiler, stores might alias members.
   const Quad kick_of_all = same.kick, turn_kick_of_all = same.turn_kick, fall_of_all = same.fall,
              weight_of_all = same.weight;
-  const double damping_of_all = same.damping;
+  const double damping_of_all = same.damping, scaled_radius_of_all = same.scaled_radius;
   const Quad drift{step.drift, step.drift, step.drift, 0}, ones{1, 1, 1, 0};
   constexpr bool flows = energies == EnergyTerms::with_flow, falls = flows || energies == EnergyTerms::with_weight;
   Quad fastest{}, poison{}, damped_power{}, damped_turning{}, momentum{}, flow_power{}, flow_work{};
@@ -106,7 +114,7 @@ template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
         Quad v = quad(own.prescribed->velocity_at(xyz(position[i]))), w = quad(own.prescribed->spin());
         prescribed += 0.5 * (product(v, v) - product(v_before, v_before)) / inverse_mass +
                       0.5 * (product(w, w) - product(w_before, w_before)) / inverse_inertia;
-        if constexpr (falls) momentum += v * own.weight / inverse_mass;
+        if constexpr (falls) momentum += v * own.weight * weighing_share(x[3], own.scaled_radius) / inverse_mass;
         Quad carried = rate * (x - centre);
         if constexpr (Shears) carried += sheared(x - centre);
         const Quad speed = absolute(v - carried);
@@ -118,23 +126,24 @@ template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
       }
     const Quad kick = Groups ? own.kick : kick_of_all, turn_kick = Groups ? own.turn_kick : turn_kick_of_all,
                fall = Groups ? own.fall : fall_of_all, weight = Groups ? own.weight : weight_of_all;
-    const double damping = Groups ? own.damping : damping_of_all;
+    const double damping = Groups ? own.damping : damping_of_all,
+                 scaled_radius = Groups ? own.scaled_radius : scaled_radius_of_all;
     const Quad force = load(sum[i].force), moment = load(sum[i].moment);
     Quad x = load(position[i]), v = load(velocity[i]), w = load(spin[i]);
-    const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
+    const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w, share = weighing_share(x[3], scaled_radius);
     const Quad before = v;
     v += growth * v;
     Quad flow = rate * (x - centre);
     if constexpr (Shears) v += step.flowed * sheared(before), flow += sheared(x - centre);
-    Quad push = force * (kick * inverse_mass) + fall;
+    Quad push = force * (kick * inverse_mass) + fall * share;
     Quad twist = moment * (turn_kick * inverse_inertia);
-    const double mass = falls ? 1 / inverse_mass : 0;
+    const double mass = falls ? 1 / inverse_mass : 0, weighing = mass * share;
     if (damping > 0) {
       const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
       if constexpr (energies != EnergyTerms::none) {
         // Sums of bodies with the same settings are multiplied by these at the end.
         const Quad lost = Groups ? damping * kick : ones, lost_by_turning = Groups ? damping * turn_kick : ones;
-        const Quad less = lost * taken(falls ? force + weight * mass : force, push, v - flow);
+        const Quad less = lost * taken(falls ? force + weight * weighing : force, push, v - flow);
         damped_power += less * (v - flow + 0.5 * pushed);
         if constexpr (flows) flow_power -= less * flow;
         damped_turning += lost_by_turning * taken(moment, twist, w) * (w + 0.5 * twisted);
@@ -143,7 +152,7 @@ template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
     }
     v += push, w += twist;
     x += v * drift;
-    if constexpr (falls) momentum += Groups ? v * mass * weight : v * mass;
+    if constexpr (falls) momentum += Groups ? v * weighing * weight : v * weighing;
     if constexpr (flows) flow_work += 0.5 * mass * (growth * before) * (before + v);
     if constexpr (flows && Shears) flow_work += 0.5 * mass * step.flowed * sheared(before) * (before + v);
     store(x, position[i]), store(v, velocity[i]), store(w, spin[i]);

@@ -5,18 +5,20 @@
 
 namespace grit {
 
-/// Sum of mass times `of(centre)` over all grains; a clump counts once, as a whole.
+/// Sum of mass times `of(centre)` over all grains, without density scaling; a clump counts once, as a whole.
 template <class Of>
 double over_masses(const World& world, Of of) {
   double sum = 0;
   const auto clump_of = world.clump_of();
+  const auto shares = world.unscaled_shares();
   for (std::size_t i = 0; i < world.positions().size(); ++i)
-    if (clump_of.empty() || clump_of[i] == no_clump) sum += of(xyz(world.positions()[i])) / world.velocities()[i].w;
-  for (const ClumpView& clump : world.clumps()) sum += of(clump.centre) * clump.mass;
+    if (clump_of.empty() || clump_of[i] == no_clump)
+      sum += of(xyz(world.positions()[i])) * (shares.empty() ? 1 : shares[i]) / world.velocities()[i].w;
+  for (const ClumpView& clump : world.clumps()) sum += of(clump.centre) * clump.unscaled_mass;
   return sum;
 }
 
-/// Mass of all grains in the domain [kg].
+/// Mass of all grains in the domain, without density scaling [kg].
 inline double mass_of(const World& world) {
   return over_masses(world, [](const Vec3&) { return 1.0; });
 }

@@ -92,6 +92,7 @@ struct Silo {
   std::optional<double> filling_friction_angle;
   double reduced_gravity = 1.0 / 6;
   std::int64_t layers = 6, seed = 1;
+  double scaled_below = 0;  ///< density scaling of smaller grains [m]; 0: none
   SiloForms forms;
 
   void declare(Parameters& p) {
@@ -236,7 +237,7 @@ struct Silo {
   /// Limit of the guard on the displacement per step that falling grains need.
   double travel() const {
     const double speed = throw_factor * (1 - filling_damping) * gravity * falling_time(),
-                 mass = density * std::numbers::pi / 6 * std::pow(smallest_diameter, 3),
+                 mass = density * std::numbers::pi / 6 * std::pow(std::max(smallest_diameter, scaled_below), 3),
                  radius = 0.5 * smallest_diameter,
                  impact = std::numbers::pi * std::sqrt(mass / (2 * contact_modulus * radius)), steps_per_impact = 7;
     return std::max(usual_travel, speed * impact / steps_per_impact / radius);
@@ -291,6 +292,8 @@ struct Silo {
             {"high", vector(width, depth, with_layer(cloud_height()))},
             {"count", std::llround(with_layer(all)) - std::llround(below_layer(all))},
             {"sizes", {{"type", "uniform"}, {"smallest", smallest_diameter}, {"largest", largest_diameter}}}}}};
+      if (scaled_below > 0)
+        d["bodies"]["layer-" + std::to_string(layer + 1)]["density_scaling"]["below"] = scaled_below;
       // Its part of the cloud is above the layers that have fallen.
       if (filling == "layers" && layer > 0)
         d["bodies"]["layer-" + std::to_string(layer + 1)]["stage"] = fill(layer + 1);
@@ -309,6 +312,8 @@ struct Silo {
     walls["back"] = plane(vector(0, depth, 0), vector(0, -1, 0), "smooth");
     d["guards"]["travel"] = travel();
     d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", vector(0, 0, -gravity)}};
+    // Grains of all sizes fall alike; the weight is their own once they are at rest.
+    if (scaled_below > 0) d["engines"]["gravity"]["scaled_weight"] = true;
     d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", filling_damping}};
     return d;
   }
@@ -347,6 +352,7 @@ struct Silo {
     Description settle = stage("settle", settling, 1e-3, settling);
     for (const char* name : {"sand", "dyed"})
       if (name != dyed || layers > 1) settle["change"]["materials"][name]["friction_angle"] = friction_angle;
+    if (scaled_below > 0) settle["change"]["engines"]["gravity"]["scaled_weight"] = false;
     if (relieved()) {
       settle["ramps"] = gravity_goes(reduced_gravity, 1);
       stages.push_back({{"name", "relieve"},
