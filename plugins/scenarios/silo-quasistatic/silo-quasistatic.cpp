@@ -16,12 +16,6 @@ constexpr int curve_samples = 400, frames_while_lowered = 10;
 void SiloQuasistatic::declare(Parameters& p) {
   silo_.declare(p);
   p.add("settlement", settlement_).unit("m").above(0).doc("displacement by which the bottom is lowered");
-  p.add("density_scaling_below", silo_.scaled_below)
-      .unit("m")
-      .at_least(0)
-      .doc(
-          "grains of a smaller diameter get the mass of one of this diameter, and keep their weight, for a longer time "
-          "step; 0: none");
   p.add("velocity", velocity_).unit("m/s").above(0).doc("velocity of the bottom");
   p.check(
       [this](const Complain& complain) {

@@ -180,6 +180,12 @@ struct Silo {
         .at_least(1)
         .at_most(100)
         .doc("number of layers of equal mass, alternately of the materials sand and dyed, which differ only in name");
+    p.add("density_scaling_below", scaled_below)
+        .unit("m")
+        .at_least(0)
+        .doc(
+            "for a longer time step: grains of a smaller diameter get the mass and inertia of one of this diameter; "
+            "their weight is unchanged after filling; 0: none");
     p.add("seed", seed).at_least(0).doc("seed of the random sizes and positions of the grains");
     p.add("analytical_solutions", forms).doc("parameters of reference values; without effect on the grains");
     p.check(
