@@ -234,14 +234,18 @@ class Flow(NamedTuple):
 def flowing(program, scene, settings=None):
     """The same as `filled`, with velocities and spins."""
     folder = _fill(program, scene, settings or {})
-    grains, data = _dumped(folder / 'frames' / '000000.dump'), folder / 'grains.data'
+    data = folder / 'grains.data'
+    given = json.loads(PACK.with_name(f'{scene}.json').read_text(encoding='utf-8'))
+    sides = list(zip('xyz', given['domain']['low'], given['domain']['high']))
+    # grit removes grains that have passed an open side at its next search; the other codes refuse them.
+    grains = [one for one in _dumped(folder / 'frames' / '000000.dump')
+              if all(low < float(one[axis]) < high for axis, low, high in sides)]
     if not data.is_file():
-        given = json.loads(PACK.with_name(f'{scene}.json').read_text(encoding='utf-8'))
         part = folder / 'grains.data.part'
         with open(part, 'w', encoding='utf-8') as out:
             out.write(f'{scene}\n\n{len(grains)} atoms\n1 atom types\n\n')
             out.writelines(f'{low!r} {high!r} {axis}lo {axis}hi\n'
-                           for axis, low, high in zip('xyz', given['domain']['low'], given['domain']['high']))
+                           for axis, low, high in sides)
             density = given['materials']['sand']['density']
             out.write('\nAtoms\n\n')
             out.writelines(f"{i} 1 {2 * float(one['radius'])!r} {density!r} {one['x']} {one['y']} {one['z']}\n"
