@@ -96,8 +96,7 @@ int NeighbourSearch::Grid::index(int axis, double x) const {
 void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins& skins) {
   cell_ = cell, skins_ = skins;
   any_periodic_ = cell.periodic[0] || cell.periodic[1] || cell.periodic[2];
-  grids_.clear();
-  if (bodies.count() == 0) return;
+  if (bodies.count() == 0) return grids_.clear();
   double smallest = std::numeric_limits<double>::max(), largest = 0, thinnest = skins.largest();
   for (std::size_t chunk = 0; chunk < chunks_of(bodies.count()); ++chunk)
     thinnest = std::min(thinnest, skins.of_chunk(chunk));
@@ -119,11 +118,11 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
     return std::clamp(static_cast<int>(place), 0, classes - 1);
   };
   grids_.resize(classes);
-  std::vector<std::vector<std::uint32_t>> members(classes);
+  for (Grid& grid : grids_) grid.members.clear(), grid.largest_radius = grid.largest_reach = 0;
   for (std::uint32_t i = 0; i < bodies.count(); ++i) {
     const double radius = bodies.position[i].w;
     const int c = class_of(radius);
-    members[c].push_back(i);
+    grids_[c].members.push_back(i);
     grids_[c].largest_radius = std::max(grids_[c].largest_radius, radius);
     grids_[c].largest_reach = std::max(grids_[c].largest_reach, radius + skins.of_body(i));
   }
@@ -131,8 +130,9 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
   const Vec3 length = box.high - box.low;
   for (int c = 0; c < classes; ++c) {
     Grid& grid = grids_[c];
+    const std::vector<std::uint32_t>& members = grid.members;
     const double width = 2 * (grid.largest_radius + thinnest) + skins.reach();
-    grid.size = cells(length, std::max(width, 1e-300), members[c].size());
+    grid.size = cells(length, std::max(width, 1e-300), members.size());
     grid.origin = box.low;
     for (int k = 0; k < 3; ++k) grid.per_length[k] = length[k] > 0 ? grid.size[k] / length[k] : 0;
     const auto cell_of = [&](std::uint32_t i) {
@@ -141,11 +141,11 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
       return (std::size_t(place(2, x.z)) * grid.size[1] + place(1, x.y)) * grid.size[0] + place(0, x.x);
     };
     grid.start.assign(std::size_t(grid.size[0]) * grid.size[1] * grid.size[2] + 1, 0);
-    for (const auto i : members[c]) ++grid.start[cell_of(i) + 1];
+    for (const auto i : members) ++grid.start[cell_of(i) + 1];
     std::partial_sum(grid.start.begin(), grid.start.end(), grid.start.begin());
-    grid.body.resize(members[c].size());
-    auto next = grid.start;
-    for (const auto i : members[c]) grid.body[next[cell_of(i)]++] = i;
+    grid.body.resize(members.size());
+    grid.next = grid.start;
+    for (const auto i : members) grid.body[grid.next[cell_of(i)]++] = i;
     grid.place(bodies, skins);
   }
 }

@@ -61,8 +61,9 @@ class NeighbourSearch {
     double largest_radius = 0, largest_reach = 0;  ///< m, without and with the skin
     Vec3 origin, per_length;                       ///< cell index = (x − origin) · per_length
     std::array<int, 3> size{1, 1, 1};
-    std::vector<std::uint32_t> start, body;  ///< bodies of cell c: body[start[c]] … body[start[c + 1]]
-    std::vector<double> x, y, z, reach;      ///< of `body`: centres, and radii with skins [m]; padded by a register
+    std::vector<std::uint32_t> start, body;    ///< bodies of cell c: body[start[c]] … body[start[c + 1]]
+    std::vector<std::uint32_t> members, next;  ///< of build(), kept for the next one
+    std::vector<double> x, y, z, reach;        ///< of `body`: centres, and radii with skins [m]; padded by a register
 
     int index(int axis, double x) const;
     void place(const Bodies& bodies, const Skins& skins);
@@ -80,7 +81,7 @@ class NeighbourSearch {
   std::array<Vec3, 3> to_image_;  // Cell::period
   bool any_periodic_ = false;
   Skins skins_;
-  std::vector<Grid> grids_;
+  std::vector<Grid> grids_;  // their memory is used again
 };
 
 }  // namespace grit
