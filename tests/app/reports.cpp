@@ -54,6 +54,30 @@ TEST_F(Reports, AreMadeAgainFromOneOrSeveralFolders) {
       << "or their curves would be one";
 }
 
+TEST_F(Reports, ReplaceOnlyTheirOwn) {
+  ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
+  const auto refused = grit({"report", "results/two", "--out", "two.json"});
+  EXPECT_EQ(refused.status, 5);
+  EXPECT_THAT(refused.err, HasSubstr("two.json: grit did not write this file"));
+  EXPECT_EQ(text("two.json"), two_grains);
+  for (const char* name : {"report.html", "curves.svg", "curves.png"}) {
+    folder.write(std::string("results/two/") + name, "mine");
+    const auto outcome =
+        name == std::string("report.html") ? grit({"report", "results/two"}) : grit({"report", "--png", "results/two"});
+    EXPECT_EQ(outcome.status, 5) << name;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("results/two/") + name + ": grit did not write this file"));
+    EXPECT_EQ(text(std::string("results/two/") + name), "mine");
+    std::filesystem::remove(folder / (std::string("results/two/") + name));
+  }
+  for (int twice = 0; twice < 2; ++twice) {
+    EXPECT_EQ(grit({"report", "results/two"}).status, 0);
+    EXPECT_EQ(grit({"report", "--png", "results/two"}).status, 0);
+  }
+  ASSERT_EQ(grit({"run", "two.json", "--overwrite", "--no-report"}).status, 0);
+  for (const char* old : {"report.html", "curves.svg", "curves.png", "map-packing-stress.svg"})
+    EXPECT_FALSE(exists(std::string("results/two/") + old)) << old << ": of the run that was replaced";
+}
+
 TEST_F(Reports, NameWhatIsOmitted) {
   ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
   folder.write("results/two/run.json", "{");

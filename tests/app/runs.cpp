@@ -142,6 +142,79 @@ TEST_F(Runs, DoNotReplaceOthersWithoutOverwrite) {
   EXPECT_NE(text_of(folder / "results/two/run.json"), before);
 }
 
+TEST_F(Runs, TouchNoFileThatTheyDidNotWrite) {
+  for (const std::string name :
+       {"frames/photo.jpg", "frames/000001.h5", "run.json", "description.json", "series.h5", "checkpoint.h5",
+        "packing.txt", "picture.svg", "report.html", "frames.xdmf", "grains.pvd", "run.json.part"}) {
+    folder.write("mine/" + name, "mine");
+    for (const char* option : {"--quiet", "--overwrite", "--resume"}) {
+      const auto refused = grit({"run", "two.json", "--out", "mine", option});
+      EXPECT_EQ(refused.status, 5) << name << ' ' << option << refused.err;
+      EXPECT_THAT(refused.err, HasSubstr("mine/" + name)) << option;
+    }
+    EXPECT_EQ(text_of(folder / ("mine/" + name)), "mine") << name;
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "mine"))
+      files += entry.is_regular_file() ? 1 : 0;
+    EXPECT_EQ(files, 1u) << name << ": nothing was added";
+    std::filesystem::remove_all(folder / "mine");
+  }
+  folder.write("mine/photo.jpg", "mine"), std::filesystem::create_directory(folder / "mine/frames");
+  EXPECT_EQ(grit({"run", "two.json", "--out", "mine"}).status, 0) << "other names are no obstacle";
+  EXPECT_EQ(text_of(folder / "mine/photo.jpg"), "mine");
+}
+
+TEST_F(Runs, KeepTheFilesOfOthersInAFolderThatIsOverwritten) {
+  ASSERT_EQ(grit({"run", "two.json"}).status, 0);
+  const auto before = text_of(folder / "results/two/run.json");
+  const auto description = text_of(folder / "results/two/description.json");
+  const auto refused = [&](const std::string& name) {
+    const auto outcome = grit({"run", "two.json", "--overwrite"});
+    EXPECT_EQ(outcome.status, 5) << name;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("results/two/" + name), HasSubstr("--out DIR")));
+    EXPECT_EQ(text_of(folder / "results/two/run.json"), before) << name;
+    EXPECT_TRUE(exists("results/two/series.h5") && exists("results/two/frames/000000.h5")) << name;
+  };
+  folder.write("results/two/frames/photo.jpg", "mine");
+  refused("frames/photo.jpg");
+  std::filesystem::remove(folder / "results/two/frames/photo.jpg");
+  folder.write("results/two/report.html", "mine");
+  refused("report.html");
+  std::filesystem::remove(folder / "results/two/report.html");
+  auto edited = json::parse(description);
+  edited["seed"] = 7;
+  folder.write("results/two/description.json", edited.dump());
+  refused("description.json");
+  folder.write("results/two/description.json", description);
+  EXPECT_EQ(grit({"run", "two.json", "--overwrite"}).status, 0);
+}
+
+TEST_F(Runs, DoNotReplaceWhatTheyRead) {
+  folder.write("description.json", two_grains);
+  auto refused = grit({"run", "description.json", "--out", "."});
+  EXPECT_EQ(refused.status, 5);
+  EXPECT_EQ(text_of(folder / "description.json"), two_grains);
+
+  ASSERT_EQ(grit({"run", "two.json"}).status, 0);
+  const auto packing = text_of(folder / "results/two/packing.txt"), run = text_of(folder / "results/two/run.json");
+  const std::string source = R"(/bodies/grains/source={"type": "file", "path": "results/two/packing.txt"})";
+  folder.write("child.json", R"({"extends": "results/two/description.json"})");
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"results/two/description.json"},
+                                             {"child.json"},
+                                             {"two.json", "--set", source},
+                                             {"two.json", "--set", R"(/begin={"from": "results/two"})", "--set",
+                                              R"(/bodies/grains/source={"type": "sample"})"}}) {
+    auto all = words;
+    all.insert(all.begin(), "run"), all.insert(all.end(), {"--out", "results/two", "--overwrite"});
+    refused = grit(all);
+    EXPECT_EQ(refused.status, 5) << words.back() << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr("this run reads it and would replace it")) << words.back();
+  }
+  EXPECT_EQ(text_of(folder / "results/two/packing.txt"), packing);
+  EXPECT_EQ(text_of(folder / "results/two/run.json"), run);
+}
+
 TEST_F(Runs, AreRefusedWhereAnotherOneWrites) {
   ASSERT_EQ(grit({"run", "two.json"}).status, 0);
   const auto before = text_of(folder / "results/two/run.json");

@@ -467,6 +467,18 @@ TEST_F(Studies, RunAgainWhatAnotherBuildOfAPluginMade) {
   EXPECT_THAT(missing_with([](auto& run) { run.erase("plugins"); }), HasSubstr("1 of 8 runs are missing"));
 }
 
+TEST_F(Studies, TouchNoFileThatTheyDidNotWrite) {
+  for (const std::string name : {"study.json", "study.csv", "study.html", "runs/usual/seed-1/log.txt"}) {
+    folder.write("results/study/" + name, "mine");
+    if (name.ends_with("log.txt")) folder.write("results/study/runs/usual/seed-1/photo.jpg", "mine");
+    const auto refused = grit({"study", "study.json"});
+    EXPECT_EQ(refused.status, 5) << name;
+    EXPECT_THAT(refused.err, HasSubstr("results/study/" + name + ": "));
+    EXPECT_EQ(text_of(folder / ("results/study/" + name)), "mine");
+    std::filesystem::remove_all(folder / "results/study");
+  }
+}
+
 TEST_F(Studies, AreNotCollectedWithoutAnyRun) {
   const auto outcome = grit({"study", "study.json", "--collect"});
   EXPECT_EQ(outcome.status, 5);

@@ -7,10 +7,11 @@
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "grit/error.hpp"
-#include "storage/atomic_file.hpp"
+#include "output/own_files.hpp"
 #include "report/curve_pictures.hpp"
 #include "report/pictures.hpp"
 #include "report/report_page.hpp"
+#include "storage/atomic_file.hpp"
 #include "study/batch.hpp"
 
 namespace grit {
@@ -34,6 +35,7 @@ void convert(const std::filesystem::path& svg, const std::filesystem::path& png)
 void write_pictures(const std::filesystem::path& folder, const std::vector<NamedPicture>& pictures) {
   for (const auto& [name, picture] : pictures) {
     const auto svg = folder / (name + ".svg"), png = folder / (name + ".png");
+    for (const auto& file : {svg, png}) refuse_foreign_page(file);
     write_atomically(svg, picture);
     convert(svg, png);
     std::cout << "picture: " << png.string() << '\n';
@@ -96,6 +98,7 @@ ExitStatus make_page(const std::vector<std::filesystem::path>& folders, std::opt
   const ReportPage page = report_page(folders);
   if (!out) out = page.first / "report.html";
   for (const std::string& why : page.unread) std::cerr << "grit: " << why << '\n';
+  refuse_foreign_page(*out);
   write_atomically(*out, page.html);
   for (const std::string& problem : page.problems) std::cerr << "grit: omitted: " << problem << '\n';
   std::cout << "report: " << out->string() << '\n';

@@ -17,6 +17,7 @@
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "output/checkpoint.hpp"
+#include "output/own_files.hpp"
 #include "output/read_results.hpp"
 #include "output/reference_curve.hpp"
 #include "output/shell_word.hpp"
@@ -33,6 +34,7 @@ void make_report(const std::filesystem::path& folder) {
   const auto out = folder / "report.html";
   try {
     const ReportPage page = report_page(std::span(&folder, 1));
+    refuse_foreign_page(out);
     write_atomically(out, page.html);
     for (const std::string& problem : page.problems) std::cerr << "grit: report: " << problem << '\n';
     std::cout << "report: " << out.string() << '\n';
@@ -174,7 +176,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     }
     if (before) continue_from(*before, job.file == (folder / "description.json").string(), facts);
     checkpoint = resumed(folder, facts);
-    if (!checkpoint) job.existing = Existing::overwrite;
+    if (!checkpoint) refuse_inputs(folder, inputs_of(job)), job.existing = Existing::overwrite;
   }
 
   const StateRequest state = picture_state(description);

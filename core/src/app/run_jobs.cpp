@@ -5,6 +5,7 @@
 #include "grit/toolkit/text_file.hpp"
 #include "input/scene.hpp"
 #include "output/folder_lock.hpp"
+#include "output/own_files.hpp"
 
 namespace grit {
 namespace {
@@ -42,6 +43,16 @@ DescriptionSource source_of(const std::string& file, const std::vector<std::stri
 
 }  // namespace
 
+std::set<std::filesystem::path> inputs_of(const RunJob& job) {
+  const Scene& scene = job.opened->scene;
+  auto inputs = paths_in(resolved(*scene.description));
+  for (const std::string& source : scene.document.sources()) inputs.insert(source);
+  inputs.insert(job.file);
+  // A run that starts again in its folder reads its own description, which stays the same.
+  if (job.existing == Existing::resume) inputs.erase(job.folder / "description.json");
+  return inputs;
+}
+
 std::vector<RunJob> jobs_of(const Options& options) {
   const auto& files = options.words();
   std::vector<RunJob> jobs;
@@ -54,10 +65,11 @@ std::vector<RunJob> jobs_of(const Options& options) {
     if (!FolderLock(job.folder).held()) refuse_busy(job.folder);  // before the bodies are made
     if (options.has("overwrite")) job.existing = Existing::overwrite;
     else if (options.has("resume")) job.existing = Existing::resume;
-    else if (std::filesystem::exists(job.folder / "run.json"))
+    else if (holds_a_run(job.folder))
       throw FileError(job.folder.string() +
                       " holds the results of a run; choose another folder (--out DIR), continue it (--resume) or "
                       "replace them (--overwrite)");
+    if (job.existing != Existing::resume) refuse_foreign_files(job.folder);
     jobs.push_back(std::move(job));
   }
   return jobs;
@@ -69,6 +81,7 @@ void open_all(std::vector<RunJob>& jobs, const Options& options) {
   for (RunJob& job : jobs) try {
       job.opened = std::make_shared<OpenedScene>(registry, load_scene(job.file, options.list("set"), *registry));
       job.source = source_of(job.file, options.list("set"));
+      if (job.existing == Existing::overwrite) refuse_inputs(job.folder, inputs_of(job));
     } catch (const DescriptionError& error) {
       for (const Problem& problem : error.problems()) problems.push_back(problem);
     }

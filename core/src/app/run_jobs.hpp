@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,11 +22,15 @@ struct RunJob {
 };
 
 /// One for each word of the command line: the file of a description or, with --resume, the folder of a run, which holds
-/// its description. Throws UsageError; FileError for a folder that is in use or holds results.
+/// its description. Throws UsageError; FileError for a folder that is in use, holds results, or holds other files under
+/// their names.
 std::vector<RunJob> jobs_of(const Options& options);
 
 /// Opens all of them before the first is run, so that a fault in the last is reported at once. Throws DescriptionError
-/// with the problems of all; FileError; PluginError.
+/// with the problems of all; FileError, also for a run that would replace a file that it reads; PluginError.
 void open_all(std::vector<RunJob>& jobs, const Options& options);
+
+/// The files and folders that a run reads: its description, those that this extends, and those that it names.
+std::set<std::filesystem::path> inputs_of(const RunJob& job);
 
 }  // namespace grit

@@ -27,6 +27,7 @@
 #include "kernel/kernel.hpp"
 #include "output/checkpoint.hpp"
 #include "output/folder_lock.hpp"
+#include "output/own_files.hpp"
 #include "output/read_results.hpp"
 #include "output/reference_curve.hpp"
 #include "output/run_facts.hpp"
@@ -320,6 +321,39 @@ void lock_folder(const std::filesystem::path& out, std::optional<FolderLock>& lo
                     "folder with --out");
 }
 
+bool is_own_json(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  const Description json = Description::parse(file, nullptr, false);
+  return json.is_object() && json.contains("variants") && json.contains("cheapest");
+}
+
+bool is_own_table(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string head;
+  std::getline(file, head);
+  return head.starts_with("variant,") && head.find(",metric,mean,error,") != std::string::npos;
+}
+
+/// Of a run that did not begin there is only the log.
+bool is_own_log(const std::filesystem::path& log) {
+  const std::filesystem::directory_iterator entries(log.parent_path());
+  return holds_a_run(log.parent_path()) || std::distance(begin(entries), end(entries)) == 1;
+}
+
+/// Throws FileError if the study would replace a file that no study wrote.
+void refuse_foreign_files_of_study(const std::filesystem::path& out, const std::vector<Run>& runs) {
+  const auto check = [](const std::filesystem::path& path, const auto& is_own) {
+    if (std::filesystem::exists(path) && !is_own(path))
+      throw FileError(path.string() +
+                      ": no study wrote this file: it would be lost; move it away, or choose another folder with "
+                      "--out");
+  };
+  check(out / "study.json", is_own_json);
+  check(out / "study.csv", is_own_table);
+  if (!std::filesystem::exists(out / "study.json")) refuse_foreign_page(out / "study.html");
+  for (const Run& run : runs) check(run.job.log, is_own_log);
+}
+
 /// Throws FileError, also if the first finished run lacks a channel of a metric.
 void run_missing(const StudyDescription& study, const std::vector<Run>& runs, std::size_t all, const Options& options,
                  const std::atomic<bool>& interrupted) {
@@ -412,6 +446,7 @@ ExitStatus study_command(const std::vector<std::string>& words) {
     std::filesystem::create_directories(out);
     lock_folder(out, lock);
   }
+  refuse_foreign_files_of_study(out, runs);
   if (!options.has("quiet") && !options.has("collect"))
     std::cerr << (study.title.empty() ? file.string() : study.title) << ": " << runs.size() << " of " << all
               << " runs to do, results in " << out.string() << std::endl;

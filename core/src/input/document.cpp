@@ -281,6 +281,13 @@ Origin Document::origin(const std::string& pointer) const {
   }
 }
 
+std::set<std::string> Document::sources() const {
+  std::set<std::string> names;
+  for (const auto& [pointer, origin] : origins_)
+    if (origin.source) names.insert(origin.source->name);
+  return names;
+}
+
 Problem Document::problem(const std::string& pointer, std::string message) const {
   const Origin written = origin(pointer);
   return {written.source->name, written.line, visible_text(written.pointer), visible_text(message)};

@@ -48,6 +48,8 @@ class Document {
   /// Origin of the value at a pointer; if it does not exist, origin of its nearest parent, with the rest of the pointer
   /// appended.
   Origin origin(const std::string& pointer) const;
+  /// Names of the sources of its values: files as given, "--set" and others.
+  std::set<std::string> sources() const;
   /// A problem with the value at a pointer.
   Problem problem(const std::string& pointer, std::string message) const;
 

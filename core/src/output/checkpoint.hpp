@@ -9,6 +9,9 @@
 
 namespace grit {
 
+/// The checkpoint in a folder of results.
+inline std::filesystem::path checkpoint_path(const std::filesystem::path& folder) { return folder / "checkpoint.h5"; }
+
 /// Writes a checkpoint with the facts of its run: grit, plugins and description. Throws FileError.
 void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint);
 

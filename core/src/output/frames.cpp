@@ -206,7 +206,6 @@ Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> wall
     if (std::ranges::find(formats, one.format) != formats.end()) exports_.push_back(&one);
   const auto folder = results_ / "frames";
   std::error_code error;
-  if (kept == 0) std::filesystem::remove_all(folder, error);
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder.string() + ": cannot make the folder: " + error.message());
 
@@ -223,8 +222,10 @@ Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> wall
 /// Those of a format that the description had before are removed too.
 void Frames::remove_later() const {
   const auto is_later = [&](const std::string& name, const char* suffix) {
-    const auto number = frame_number(name, suffix);
-    return number && *number >= instants_.size();
+    const std::string part = temporary_path(suffix).string();
+    for (const char* end : {suffix, part.c_str()})
+      if (const auto number = frame_number(name, end); number && *number >= instants_.size()) return true;
+    return false;
   };
   std::vector<std::filesystem::path> later;
   std::error_code error;

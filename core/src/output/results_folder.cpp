@@ -13,6 +13,7 @@
 #include "output/body_columns.hpp"
 #include "output/checkpoint.hpp"
 #include "output/grain_view.hpp"
+#include "output/own_files.hpp"
 #include "output/picture.hpp"
 #include "storage/atomic_file.hpp"
 
@@ -53,22 +54,17 @@ std::vector<std::filesystem::path> made(const std::filesystem::path& folder) {
   return all;
 }
 
-/// Checks that the folder may be used, and removes old results.
-std::filesystem::path prepared(const ResultsOptions& options, const FolderLock& lock) {
+/// Checks that the folder may be used. Nothing is changed.
+std::filesystem::path checked(const ResultsOptions& options, const FolderLock& lock) {
   const auto& folder = options.folder;
   if (!lock.held()) refuse_busy(folder);
-  std::error_code error;
   if (options.existing == Existing::resume) return folder;
-  for (const char* mark : {"run.json", "series.h5", "checkpoint.h5", "final.h5"})
-    if (options.existing == Existing::refuse && std::filesystem::exists(folder / mark))
-      throw FileError(folder.string() + ": holds a run already (" + mark +
-                      "); choose another folder, resume that run, or allow it to be overwritten");
-  for (const char* mine : {"run.json", "description.json", "series.h5", "checkpoint.h5", "final.h5", "frames",
-                           "frames.xdmf", "grains.pvd", "walls.pvd", "packing.txt", "picture.svg", "report.html",
-                           "curves.svg", "curves.png", "grains.svg", "grains.png", "layers.svg", "layers.png"}) {
-    std::filesystem::remove_all(folder / mine, error);
-    if (error) throw FileError((folder / mine).string() + ": cannot remove it: " + error.message());
-  }
+  if (options.existing == Existing::refuse && holds_a_run(folder))
+    for (const char* mark : {"run.json", "series.h5", "checkpoint.h5", "final.h5"})
+      if (std::filesystem::exists(folder / mark))
+        throw FileError(folder.string() + ": holds a run already (" + mark +
+                        "); choose another folder, resume that run, or allow it to be overwritten");
+  refuse_foreign_files(folder);
   return folder;
 }
 
@@ -82,9 +78,12 @@ ResultsFolder::ResultsFolder(ResultsOptions options)
     : options_(std::move(options)),
       made_(made(options_.folder)),
       lock_(options_.folder),
-      run_json_(prepared(options_, lock_) / "run.json", options_.facts) {
-  if (!options_.facts.description.is_null())
-    write_atomically(options_.folder / "description.json", options_.facts.description.dump(2) + '\n');
+      run_json_(checked(options_, lock_) / "run.json", options_.facts) {
+  if (options_.existing == Existing::resume) return;
+  const bool replaces = holds_a_run(options_.folder);
+  run_json_.announce();  // first, so that a folder in which the run is killed is known as its own
+  if (replaces) remove_results(options_.folder);
+  write_description();
 }
 
 ResultsFolder::~ResultsFolder() {
@@ -95,6 +94,11 @@ void ResultsFolder::discard() noexcept {
   std::error_code none;
   for (const char* file : {"run.json", "description.json"}) std::filesystem::remove(options_.folder / file, none);
   for (const auto& folder : made_) std::filesystem::remove(folder, none);  // if it is empty
+}
+
+void ResultsFolder::write_description() const {
+  if (!options_.facts.description.is_null())
+    write_atomically(options_.folder / "description.json", options_.facts.description.dump(2) + '\n');
 }
 
 void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes) {
@@ -116,6 +120,7 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
   }
   frames_.emplace(options_.folder, options_.walls, resumed_.frames, options_.formats);
   run_json_.begin(world, resumes);
+  if (resumes) write_description();
 }
 
 void ResultsFolder::sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) {

@@ -30,7 +30,7 @@ struct PictureRequest {
 /// What to do if the folder holds a run.
 enum class Existing {
   refuse,
-  overwrite,  ///< remove its results; other files in it stay
+  overwrite,  ///< remove its results; other files in it stay, and are refused under the names of results
   resume,     ///< keep the results up to the checkpoint from which the run is resumed
 };
 
@@ -48,14 +48,14 @@ struct ResultsOptions {
 /// Throws FileError: another run is writing to the folder.
 [[noreturn]] void refuse_busy(const std::filesystem::path& folder);
 
-/// Writes at the start description.json and run.json; during the run series.h5, frames/, frames.xdmf, grains.pvd and
+/// Writes at the start run.json and description.json; during the run series.h5, frames/, frames.xdmf, grains.pvd and
 /// walls.pvd for VTK, run.json and checkpoint.h5, whose last one becomes final.h5 when the run is done; at the end
 /// packing.txt (`x y z radius` in m, by id, in full precision; not for a failed run), picture.svg, and run.json last,
 /// so that its status implies that the rest is complete. All functions throw FileError for write errors.
 class ResultsFolder final : public Recorder {
  public:
-  /// Creates the folder. Throws FileError if that fails, if another run is writing to it, or if it holds a run and
-  /// `existing` is refuse.
+  /// Creates the folder. Throws FileError if that fails, if another run is writing to it, if it holds a run and
+  /// `existing` is refuse, or if a file that no run wrote would be lost.
   explicit ResultsFolder(ResultsOptions options);
   /// If begin() was never called, removes the files and folders that were created, so that a run that does not reach
   /// its first step leaves nothing behind.
@@ -90,6 +90,7 @@ class ResultsFolder final : public Recorder {
 
   void draw_picture(const World& world, const RunSummary& summary) const;
 
+  void write_description() const;
   void keep_final_state() const;
   void discard() noexcept;
 

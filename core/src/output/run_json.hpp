@@ -15,6 +15,8 @@ namespace grit {
 class RunJson {
  public:
   RunJson(std::filesystem::path path, const RunFacts& facts);
+  /// The facts of a run that is being prepared, with the status "running".
+  void announce() const { write(); }
   /// Sets the status "running". A resumed run increments the count of resumptions in the existing file.
   void begin(const World& world, bool resumed);
   void stage_ended(const World& world, const std::string& what);

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "output/own_files.hpp"
+
 namespace grit {
 namespace {
 
@@ -43,7 +45,9 @@ Svg::Svg(double width, double height, std::string_view title, std::string_view s
   out_ += '"';
   attribute("width", width);
   attribute("height", height);
-  out_ += ">\n<title>";
+  out_ += ">\n";
+  out_ += picture_mark;
+  out_ += "\n<title>";
   out_ += escaped(title);
   out_ += "</title>\n<style>\n";
   out_ += style;

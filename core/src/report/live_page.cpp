@@ -39,7 +39,8 @@ LivePage::LivePage(path folder, std::string run, const GrainLimits& limits, std:
 
 bool LivePage::refresh() {
   const std::string before = stamp_of(folder_);
-  if (before == stamp_ || !std::filesystem::exists(folder_ / "run.json")) return false;
+  const auto has = [&](const char* file) { return std::filesystem::exists(folder_ / file); };
+  if (before == stamp_ || !has("run.json") || !has("series.h5")) return false;  // a run that is being prepared
   DataElements data = data_.next();
   ReportContent content;
   try {

@@ -1,0 +1,198 @@
+#include "output/own_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <optional>
+#include <string_view>
+
+#include "grit/error.hpp"
+#include "output/checkpoint.hpp"
+#include "output/frame_exports.hpp"
+#include "output/read_results.hpp"
+#include "storage/atomic_file.hpp"
+#include "storage/frame_state.hpp"
+#include "storage/hdf5.hpp"
+
+namespace grit {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* how_to_keep = ": it would be lost; move it away, or choose another folder (--out DIR)";
+
+// In the order in which they are removed: first those from which a run would be resumed.
+constexpr std::array results{"checkpoint.h5", "checkpoint-previous.h5",
+                             "final.h5",      "series.journal",
+                             "series.h5",     "frames.xdmf",
+                             "grains.pvd",    "walls.pvd",
+                             "packing.txt",   "picture.svg",
+                             "report.html"};
+constexpr std::array replaced{"run.json", "description.json"};
+// Of `grit report --png`; a run does not write them.
+constexpr std::array pictures{"curves", "curves-overlaid", "grains", "layers", "force-chains", "linear-chains"};
+constexpr std::array picture_beginnings{"profiles-", "directions-", "map-"};
+
+/// The names in a folder of results that a run writes.
+std::vector<std::string> names() {
+  std::vector<std::string> all(results.begin(), results.end());
+  all.insert(all.end(), replaced.begin(), replaced.end());
+  for (std::size_t i = 0, files = all.size(); i < files; ++i) all.push_back(temporary_path(all[i]).string());
+  return all;
+}
+
+/// Whether the entry of frames/ has a name that a run gives.
+bool is_frame(const std::string& name) {
+  const auto is_of = [&](const char* suffix) {
+    const std::string part = temporary_path(suffix).string();
+    return frame_number(name, suffix) || frame_number(name, part.c_str());
+  };
+  return is_of(".h5") || std::ranges::any_of(frame_exports(), [&](const auto& one) { return is_of(one.suffix); });
+}
+
+std::vector<fs::path> entries(const fs::path& folder) {
+  std::vector<fs::path> all;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) all.push_back(entry.path());
+  std::ranges::sort(all);
+  return all;
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code none;
+  return fs::symlink_status(path, none).type() == fs::file_type::regular;
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code none;
+  return fs::symlink_status(path, none).type() != fs::file_type::not_found;
+}
+
+bool is_run_json(const std::optional<Description>& json) {
+  return json && json->contains("grit") && json->at("grit").is_object() && json->contains("status") &&
+         json->at("status").is_string();
+}
+
+bool is_state(const fs::path& path) {
+  if (!is_file(path)) return false;
+  try {
+    const hdf5::File file(path, hdf5::Mode::read);
+    return file.has_attribute("format") && file.has("facts") && file.has("state");
+  } catch (const FileError&) {
+    return false;
+  }
+}
+
+/// Whether a file has this text near its beginning.
+bool has_mark(const fs::path& path, std::string_view mark) {
+  std::string head(4096, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head.find(mark) != std::string::npos;
+}
+
+bool is_own_page(fs::path path) {
+  if (path.extension() == ".png") path.replace_extension(".svg");
+  if (!is_file(path)) return false;
+  std::error_code none;
+  if (fs::file_size(path, none) == 0) return true;  // lost when the machine crashed; there is nothing to lose
+  return has_mark(path, path.extension() == ".svg" ? picture_mark : page_mark);
+}
+
+[[noreturn]] void refuse(const fs::path& path, const char* why) {
+  throw FileError(path.string() + ": " + why + how_to_keep);
+}
+
+constexpr const char* foreign = "grit did not write this file";
+
+void refuse_foreign_frames(const fs::path& folder) {
+  std::error_code none;
+  if (is_there(folder) && !fs::is_directory(folder, none)) refuse(folder, foreign);
+  for (const auto& path : entries(folder))
+    if (!is_file(path) || !is_frame(path.filename().string())) refuse(path, foreign);
+}
+
+/// Of a folder that holds a run.
+void refuse_edited_description(const fs::path& folder) {
+  const auto path = folder / "description.json";
+  const auto run = read_run_json(folder);
+  if (!is_file(path) || !run || !run->contains("description")) return;
+  std::ifstream file(path);
+  if (Description::parse(file, nullptr, false) != run->at("description"))
+    refuse(path, "was changed since the run wrote it");
+}
+
+}  // namespace
+
+bool holds_a_run(const fs::path& folder) {
+  if (is_file(folder / "run.json") && is_run_json(read_run_json(folder))) return true;
+  return is_state(checkpoint_path(folder)) || is_state(folder / "final.h5");
+}
+
+void refuse_foreign_files(const fs::path& folder) {
+  const bool has_run = holds_a_run(folder);
+  for (const std::string& name : names())
+    if (is_there(folder / name) && !(has_run && is_file(folder / name))) refuse(folder / name, foreign);
+  for (const char* page : {"picture.svg", "report.html"})
+    if (is_there(folder / page) && !is_own_page(folder / page)) refuse(folder / page, foreign);
+  refuse_foreign_frames(folder / "frames");
+  if (!has_run) {
+    if (const auto all = entries(folder / "frames"); !all.empty()) refuse(all.front(), foreign);
+    return;
+  }
+  refuse_edited_description(folder);
+}
+
+void refuse_inputs(const fs::path& folder, const std::set<fs::path>& inputs) {
+  const auto all = names();
+  std::error_code none;
+  for (const fs::path& input : inputs) {
+    if (input.empty() || !fs::exists(input, none)) continue;
+    const bool is_result =
+        fs::equivalent(input, folder, none) ||
+        fs::equivalent(fs::absolute(input, none).parent_path(), folder / "frames", none) ||
+        std::ranges::any_of(all, [&](const auto& name) { return fs::equivalent(input, folder / name, none); });
+    if (is_result) refuse(input, "this run reads it and would replace it");
+  }
+}
+
+std::set<fs::path> paths_in(const Description& description) {
+  std::set<fs::path> all;
+  if (description.is_string())
+    if (const fs::path path = description.get<std::string>(); path.is_absolute()) all.insert(path);
+  if (description.is_structured())
+    for (const Description& part : description) all.merge(paths_in(part));
+  return all;
+}
+
+void remove_results(const fs::path& folder) {
+  std::vector<fs::path> old;
+  for (const char* name : results) {
+    old.push_back(folder / name);
+    old.push_back(temporary_path(folder / name));
+  }
+  for (const auto& path : entries(folder / "frames"))
+    if (is_frame(path.filename().string())) old.push_back(path);
+  for (const auto& path : entries(folder)) {
+    const std::string name = path.stem().string();
+    const bool is_picture =
+        std::ranges::find(pictures, name) != pictures.end() ||
+        std::ranges::any_of(picture_beginnings, [&](const char* begin) { return name.starts_with(begin); });
+    // The PNG file, known by its SVG file, comes before it.
+    if (is_picture && (path.extension() == ".svg" || path.extension() == ".png") && is_own_page(path))
+      old.push_back(path);
+  }
+  for (const auto& path : old) {
+    std::error_code error;
+    if (fs::remove(path, error); error) throw FileError(path.string() + ": cannot remove it: " + error.message());
+  }
+}
+
+void refuse_foreign_page(const fs::path& path) {
+  if (is_there(path) && !is_own_page(path))
+    throw FileError(path.string() +
+                    ": grit did not write this file: it would be lost; move it away, or choose another one (--out)");
+}
+
+}  // namespace grit

@@ -1,0 +1,36 @@
+// Which files of a folder grit may replace or remove: those that it wrote.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "grit/description.hpp"
+
+namespace grit {
+
+/// In pages and pictures, so that they are known as written by grit.
+inline constexpr const char* page_mark = "<meta name=\"generator\" content=\"grit\">";
+inline constexpr const char* picture_mark = "<!-- drawn by grit -->";
+
+/// Whether a folder holds a run: a run.json that grit wrote or, if that was lost, a state.
+bool holds_a_run(const std::filesystem::path& folder);
+
+/// Throws FileError if a run in this folder would replace or remove a file that no run wrote, or an edited description.
+void refuse_foreign_files(const std::filesystem::path& folder);
+
+/// Throws FileError if a run in this folder would replace or remove one of these files.
+void refuse_inputs(const std::filesystem::path& folder, const std::set<std::filesystem::path>& inputs);
+
+/// Paths in a resolved description.
+std::set<std::filesystem::path> paths_in(const Description& description);
+
+/// Removes the results of a run, with its pictures, except run.json and description.json, which are replaced. To be
+/// called after refuse_foreign_files(). Throws FileError.
+void remove_results(const std::filesystem::path& folder);
+
+/// Throws FileError if a page or picture exists that grit did not write. A PNG file is its own if the SVG file is.
+void refuse_foreign_page(const std::filesystem::path& path);
+
+}  // namespace grit
