@@ -114,7 +114,9 @@ TEST_F(CheckpointFile, ThatIsDamagedIsRefused) {
     file.seekp(at);
     file.put(byte);
     file.close();
-    EXPECT_THAT(refusal<FileError>(), AllOf(HasSubstr("checkpoint.h5/state"), HasSubstr("not a complete checkpoint")));
+    EXPECT_THAT(refusal<FileError>(),
+                AllOf(HasSubstr("checkpoint.h5: its checksum is not that of its content: the file is damaged"),
+                      HasSubstr("not a complete checkpoint")));
     write_checkpoint(path_, facts_, checkpoint_);
   }
   std::filesystem::resize_file(path_, size / 2);
@@ -123,6 +125,53 @@ TEST_F(CheckpointFile, ThatIsDamagedIsRefused) {
   EXPECT_THAT(refusal<FileError>(), HasSubstr("not a complete checkpoint"));
   std::filesystem::remove(path_);
   EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5"));
+}
+
+TEST_F(CheckpointFile, IsRefusedWhicheverByteChanged) {
+  constexpr std::size_t places = 150, of_the_checksum = 19;
+  const auto size = std::filesystem::file_size(path_) - of_the_checksum;
+  const auto flip = [&](std::size_t at) {
+    std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekg(static_cast<std::streamoff>(at));
+    const char byte = static_cast<char>(file.get() ^ 0x40);
+    file.seekp(static_cast<std::streamoff>(at));
+    file.put(byte);
+  };
+  for (std::size_t i = 0; i < places; ++i) {
+    // Half of them at the beginning, where HDF5 has its own data.
+    const std::size_t at = i < places / 2 ? 16 * i : size * i / places;
+    flip(at);
+    EXPECT_THAT(refusal<DamagedCheckpoint>(), HasSubstr("checkpoint.h5: its checksum")) << "byte " << at;
+    flip(at);
+  }
+  EXPECT_NO_THROW(read_checkpoint(path_, facts_));
+}
+
+TEST_F(CheckpointFile, OfBeforeIsTakenIfTheLastIsDamagedOrMissing) {
+  const auto previous = previous_checkpoint_path(folder_.path());
+  EXPECT_EQ(checkpoint_path(folder_.path()), path_);
+  const auto last = [&] { return last_checkpoint(folder_.path(), facts_); };
+  ASSERT_TRUE(last());
+  EXPECT_EQ(last()->note, "");
+  checkpoint_.step = 2000;
+  write_checkpoint(path_, facts_, checkpoint_, previous);
+  EXPECT_EQ(last()->checkpoint.step, 2000u);
+  EXPECT_EQ(last()->note, "");
+
+  std::filesystem::resize_file(path_, std::filesystem::file_size(path_) / 2);
+  EXPECT_EQ(last()->checkpoint.step, 1000u);
+  EXPECT_THAT(last()->note, AllOf(HasSubstr("checkpoint.h5: cannot read"),
+                                  HasSubstr("the run continues from the checkpoint before it, " + previous.string())));
+  std::filesystem::remove(path_);
+  EXPECT_TRUE(has_checkpoint(folder_.path()));
+  EXPECT_EQ(last()->checkpoint.step, 1000u);
+  EXPECT_THAT(last()->note, HasSubstr("checkpoint.h5: is missing"));
+
+  std::ofstream(path_) << "not a checkpoint", std::ofstream(previous) << "neither";
+  EXPECT_THAT(error_of<DamagedCheckpoint>(last),
+              AllOf(HasSubstr("checkpoint.h5: "), HasSubstr("checkpoint-previous.h5: "), HasSubstr("--overwrite")));
+  std::filesystem::remove(path_), std::filesystem::remove(previous);
+  EXPECT_FALSE(last());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "fake_world.hpp"
 #include "folder.hpp"
 #include "grit/error.hpp"
+#include "output/checkpoint.hpp"
 #include "svg_elements.hpp"
 
 namespace grit::results_folder_tests {
@@ -207,6 +208,7 @@ TEST(ResultsFolder, ContinuesAResumedRun) {
   sample(results, world, 0.002, 0.6);
   RunSummary summary;
   summary.status = "done";
+  results.final_state({"stage", 0, 21, {}});
   results.finish(world, summary);
   const auto series = hdf5::File(folder / "run/series.h5", hdf5::Mode::read);
   EXPECT_THAT(series.group("test").dataset("step").read<int>(), ElementsAre(10, 20, 21));
@@ -221,6 +223,26 @@ TEST(ResultsFolder, ContinuesAResumedRun) {
   EXPECT_EQ(run.at("stages").size(), 2u);
   EXPECT_EQ(run.at("resumed_at_step"), 20);
   EXPECT_EQ(run.at("resumed"), 1);
+}
+
+/// A run that is killed while it writes its last results resumes from there.
+TEST(ResultsFolder, KeepsItsLastTwoCheckpointsUntilItIsDone) {
+  const Folder folder;
+  auto world = world_of_two();
+  const auto wanted = options(folder / "run");
+  ResultsFolder results(wanted);
+  results.begin(world, probes);
+  const auto step_of = [&](const char* file) { return read_checkpoint(folder / file, wanted.facts).step; };
+  for (const std::uint64_t step : {10, 20, 30}) results.checkpoint({"stage", 0, step, {}});
+  results.final_state({"stage", 0, 40, {}});
+  EXPECT_EQ(step_of("run/checkpoint.h5"), 30u);
+  EXPECT_EQ(step_of("run/checkpoint-previous.h5"), 20u);
+  EXPECT_EQ(step_of("run/final.h5"), 40u);
+  RunSummary summary;
+  summary.status = "done";
+  results.finish(world, summary);
+  EXPECT_FALSE(has_checkpoint(folder / "run"));
+  EXPECT_EQ(step_of("run/final.h5"), 40u);
 }
 
 TEST(ResultsFolder, ReportsWhyItCannotBeCreated) {

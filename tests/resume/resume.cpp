@@ -162,6 +162,33 @@ TEST_F(Resume, ContinuesAKilledRun) {
   expect_same_results("whole", "killed");
 }
 
+TEST_F(Resume, GoesOnFromTheCheckpointBeforeIfTheLastIsDamaged) {
+  ASSERT_EQ(grit(run("whole")).status, 0);
+  kill("killed");
+  kill("killed", {"--resume"});
+  const auto last = folder / "killed/checkpoint.h5", before = folder / "killed/checkpoint-previous.h5";
+  ASSERT_TRUE(std::filesystem::exists(before));
+  std::filesystem::resize_file(last, std::filesystem::file_size(last) / 2);
+  const auto rest = grit(run("killed", {"--resume"}));
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_THAT(rest.err,
+              AllOf(HasSubstr("grit: warning: killed/checkpoint.h5: "),
+                    HasSubstr("the run continues from the checkpoint before it, killed/checkpoint-previous.h5"),
+                    HasSubstr("continues from step ")));
+  expect_same_results("whole", "killed");
+  EXPECT_FALSE(std::filesystem::exists(last) || std::filesystem::exists(before));
+}
+
+TEST_F(Resume, WritesAMissingPageOfACompleteRun) {
+  ASSERT_EQ(grit(run("done", {"--set", "/stages/0/until/value=10", "--set", "/stages/1/until/value=10"})).status, 0);
+  std::ofstream(folder / "done/checkpoint.h5") << "left by a run that was killed after its end";
+  const auto again = grit({"run", "done", "--resume"});
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(again.out, "done: already complete\nreport: done/report.html\n");
+  EXPECT_TRUE(std::filesystem::exists(folder / "done/report.html"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "done/checkpoint.h5"));
+}
+
 TEST_F(Resume, StartsFromTheBeginningWithoutACheckpoint) {
   const auto outcome =
       grit(run("new", {"--resume", "--set", "/stages/0/until/value=10", "--set", "/stages/1/until/value=10"}));

@@ -43,6 +43,14 @@ void make_report(const std::filesystem::path& folder) {
   }
 }
 
+/// Does what a run that was killed after its last result left undone.
+void complete(const std::filesystem::path& folder, const Options& options) {
+  const FolderLock lock(folder);
+  if (!lock.held()) refuse_busy(folder);
+  if (std::filesystem::exists(folder / "final.h5")) remove_checkpoints(folder);
+  if (!options.has("no-report") && !std::filesystem::exists(folder / "report.html")) make_report(folder);
+}
+
 /// Where --watch serves the page; none without it.
 std::optional<Listener> listener_of(const Options& options) {
   if (!options.has("watch")) {
@@ -60,9 +68,11 @@ std::optional<Listener> listener_of(const Options& options) {
 }
 
 /// The checkpoint from which a run continues. Without one the run starts from the beginning, which is reported.
-std::optional<Checkpoint> resumed(const std::filesystem::path& folder, const RunFacts& facts) {
-  const auto path = folder / "checkpoint.h5";
-  if (std::filesystem::exists(path)) return read_checkpoint(path, facts);
+std::optional<LastCheckpoint> resumed(const std::filesystem::path& folder, const RunFacts& facts) {
+  if (auto last = last_checkpoint(folder, facts)) {
+    if (!last->note.empty()) std::cerr << "grit: warning: " << last->note << std::endl;
+    return last;
+  }
   std::cerr << "no checkpoint in " << folder.string() << ": the run starts from the beginning" << std::endl;
   return std::nullopt;
 }
@@ -83,7 +93,7 @@ bool is_done(const Description& run_json, const std::filesystem::path& folder, c
 /// Advice after a guard that only decides where a run ends: it can be changed before resuming.
 std::string resume_advice(Guard guard, const std::filesystem::path& folder) {
   if (guard != Guard::travel && guard != Guard::energy) return "";
-  if (!std::filesystem::exists(folder / "checkpoint.h5")) return "";
+  if (!has_checkpoint(folder)) return "";
   return std::string("\n  the last checkpoint is kept: change /guards/") +
          (guard == Guard::travel ? "travel" : "energy") + " and continue with --resume";
 }
@@ -92,7 +102,7 @@ std::string resume_advice(Guard guard, const std::filesystem::path& folder) {
 RunSummary run_or_advise(Simulation& simulation, const RunJob& job) try {
   return run_recorded(simulation);
 } catch (const FileError& error) {
-  const bool saved = std::filesystem::exists(job.folder / "checkpoint.h5");
+  const bool saved = has_checkpoint(job.folder);
   throw FileError(error.what() + std::string("\n  free space on the disk, or remove the cause, then ") +
                   (saved
                        ? "continue from the last checkpoint: 'grit run --resume " + shell_word(job.folder.string())
@@ -167,22 +177,25 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   check_references(description.output);
   say(description.title.empty() ? job.file : job.file + ": " + description.title);
   RunFacts facts = facts_of(job, threads, command_line);
-  std::optional<Checkpoint> checkpoint;
+  std::optional<LastCheckpoint> last;
   if (job.existing == Existing::resume) {
     const auto before = read_run_json(folder);
     if (before && is_done(*before, folder, facts)) {
       std::cout << folder.string() << ": already complete\n";
+      complete(folder, options);
       return ExitStatus::done;
     }
     if (before) continue_from(*before, job.file == (folder / "description.json").string(), facts);
-    checkpoint = resumed(folder, facts);
-    if (!checkpoint) refuse_inputs(folder, inputs_of(job)), job.existing = Existing::overwrite;
+    last = resumed(folder, facts);
+    if (!last) refuse_inputs(folder, inputs_of(job)), job.existing = Existing::overwrite;
   }
 
   const StateRequest state = picture_state(description);
-  Prepared prepared = checkpoint ? job.opened->prepare_to_resume(state) : job.opened->prepare(state);
+  Prepared prepared = last ? job.opened->prepare_to_resume(state) : job.opened->prepare(state);
   if (!prepared.note.empty()) say(prepared.note);
-  ResultsFolder results(results_of(job, std::move(facts), prepared.bodies));
+  ResultsOptions written = results_of(job, std::move(facts), prepared.bodies);
+  written.from_previous = last && !last->note.empty();
+  ResultsFolder results(std::move(written));
   std::optional<Watch> watch;  // before the simulation, which makes threads
   if (listener) watch.emplace(*listener, folder);
   ProgressBar bar;
@@ -193,16 +206,18 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
 
   Simulation simulation(std::make_unique<Simulation::Parts>(job.opened, std::move(prepared), threads, &curves));
   simulation.interrupt_when([&] { return interrupted.load(); });
-  simulation.on_checkpoint([&](const Checkpoint& now) { results.checkpoint(now); },
-                           description.output.checkpoint_every);
+  simulation.on_checkpoint(
+      [&](const Checkpoint& now) { simulation.done() ? results.final_state(now) : results.checkpoint(now); },
+      description.output.checkpoint_every);
   if (!quiet || watch)
     simulation.on_progress([&](const Progress& now) {
       if (!quiet) bar.show(now);
       if (watch) watch->say(progress_text(now));
     });
-  if (checkpoint) {
-    say("continues from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
-    simulation.resume(*checkpoint);
+  if (last) {
+    const Checkpoint& checkpoint = last->checkpoint;
+    say("continues from step " + std::to_string(checkpoint.step) + ", stage \"" + checkpoint.stage + "\"");
+    simulation.resume(checkpoint);
   }
   say(counted(simulation.world().positions().size(), "body", "bodies") + ", " + counted(threads, "thread", "threads") +
       ", results in " + folder.string());

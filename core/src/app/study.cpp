@@ -75,11 +75,8 @@ std::set<std::string> builds(const Description& plugins) {
 
 /// Whether a run of these facts left a complete checkpoint that this build can resume.
 bool can_resume(const std::filesystem::path& folder, const RunFacts& facts) {
-  const auto path = folder / "checkpoint.h5";
-  if (!std::filesystem::exists(path)) return false;
   try {
-    read_checkpoint(path, facts);
-    return true;
+    return last_checkpoint(folder, facts).has_value();
   } catch (const Error&) {
     return false;
   }

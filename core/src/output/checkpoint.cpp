@@ -175,8 +175,15 @@ std::string advice_on_stages(const Description& now, const Description& then) {
          "start in another folder (--out DIR)";
 }
 
-void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint) {
-  write_state(path, {facts_of(facts), checkpoint});
+bool has_checkpoint(const std::filesystem::path& folder) {
+  std::error_code none;
+  return std::filesystem::exists(checkpoint_path(folder), none) ||
+         std::filesystem::exists(previous_checkpoint_path(folder), none);
+}
+
+void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint,
+                      const std::filesystem::path& previous) {
+  write_state(path, {facts_of(facts), checkpoint}, previous);
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& facts) {
@@ -184,8 +191,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& fa
   try {
     file = read_state(path);
   } catch (const FileError& error) {
-    throw FileError(std::string(error.what()) +
-                    "\n  it is not a complete checkpoint of this grit; start again (--overwrite)");
+    throw DamagedCheckpoint(error.what(),
+                            "\n  it is not a complete checkpoint of this grit; start again (--overwrite)");
   }
   const Description& then = file.facts;
   const Description now = facts_of(facts);
@@ -198,6 +205,24 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& fa
   if (const auto other = lines(now.at("plugins"), then.at("plugins")); !other.empty())
     throw PluginError(path.string() + ": was written with other builds of plugins:" + other + "\n  " + advice);
   return std::move(file.checkpoint);
+}
+
+std::optional<LastCheckpoint> last_checkpoint(const std::filesystem::path& folder, const RunFacts& facts) {
+  if (!has_checkpoint(folder)) return std::nullopt;
+  const auto newest = checkpoint_path(folder), previous = previous_checkpoint_path(folder);
+  std::string cause = newest.string() + ": is missing";
+  if (std::filesystem::exists(newest)) try {
+      return LastCheckpoint{read_checkpoint(newest, facts)};
+    } catch (const DamagedCheckpoint& error) {
+      if (!std::filesystem::exists(previous)) throw;
+      cause = error.cause();
+    }
+  try {
+    return LastCheckpoint{read_checkpoint(previous, facts),
+                          cause + "; the run continues from the checkpoint before it, " + previous.string()};
+  } catch (const DamagedCheckpoint& error) {
+    throw DamagedCheckpoint(cause, std::string("\n") + error.what());
+  }
 }
 
 }  // namespace grit

@@ -2,22 +2,51 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "grit/checkpoint.hpp"
+#include "grit/error.hpp"
 #include "output/run_facts.hpp"
 
 namespace grit {
 
-/// The checkpoint in a folder of results.
+/// The last checkpoint in a folder of results, and the one before it, in case the last is damaged.
 inline std::filesystem::path checkpoint_path(const std::filesystem::path& folder) { return folder / "checkpoint.h5"; }
+inline std::filesystem::path previous_checkpoint_path(const std::filesystem::path& folder) {
+  return folder / "checkpoint-previous.h5";
+}
+/// Whether there is one of them.
+bool has_checkpoint(const std::filesystem::path& folder);
 
-/// Writes a checkpoint with the facts of its run: grit, plugins and description. Throws FileError.
-void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint);
+/// A checkpoint that is incomplete, damaged, or of another format.
+class DamagedCheckpoint : public FileError {
+ public:
+  DamagedCheckpoint(const std::string& cause, const std::string& advice) : FileError(cause + advice), cause_(cause) {}
+  /// what() without advice.
+  const std::string& cause() const { return cause_; }
 
-/// Throws FileError for an incomplete checkpoint or one of another build of grit; PluginError for other builds of
-/// plugins; Error if the description cannot be resumed from it.
+ private:
+  std::string cause_;
+};
+
+/// Writes a checkpoint with the facts of its run: grit, plugins and description. `previous`: as for write_state().
+/// Throws FileError.
+void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint,
+                      const std::filesystem::path& previous = {});
+
+/// Throws DamagedCheckpoint; FileError for one of another build of grit; PluginError for other builds of plugins; Error
+/// if the description cannot be resumed from it.
 Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& facts);
+
+struct LastCheckpoint {
+  Checkpoint checkpoint;
+  /// Why it is not that of checkpoint_path() but the one before it; empty if it is.
+  std::string note = {};
+};
+
+/// The last checkpoint of a folder that is whole; nothing if there is none. Throws as read_checkpoint() does.
+std::optional<LastCheckpoint> last_checkpoint(const std::filesystem::path& folder, const RunFacts& facts);
 
 /// Lines with the pointers at which two descriptions differ, each with the found and the allowed value; stages are
 /// compared by name. Empty if the descriptions are of the same run. /output/checkpoint_every may differ.

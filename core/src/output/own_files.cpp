@@ -22,11 +22,17 @@ namespace fs = std::filesystem;
 constexpr const char* how_to_keep = ": it would be lost; move it away, or choose another folder (--out DIR)";
 
 // In the order in which they are removed: first those from which a run would be resumed.
-constexpr std::array results{"checkpoint.h5", "checkpoint-previous.h5",
-                             "final.h5",      "series.journal",
-                             "series.h5",     "frames.xdmf",
-                             "grains.pvd",    "walls.pvd",
-                             "packing.txt",   "picture.svg",
+constexpr std::array results{"checkpoint.h5",
+                             "checkpoint-previous.h5",
+                             "checkpoint-previous.h5",
+                             "final.h5",
+                             "series.journal",
+                             "series.h5",
+                             "frames.xdmf",
+                             "grains.pvd",
+                             "walls.pvd",
+                             "packing.txt",
+                             "picture.svg",
                              "report.html"};
 constexpr std::array replaced{"run.json", "description.json"};
 // Of `grit report --png`; a run does not write them.
@@ -127,7 +133,8 @@ void refuse_edited_description(const fs::path& folder) {
 
 bool holds_a_run(const fs::path& folder) {
   if (is_file(folder / "run.json") && is_run_json(read_run_json(folder))) return true;
-  return is_state(checkpoint_path(folder)) || is_state(folder / "final.h5");
+  return is_state(checkpoint_path(folder)) || is_state(previous_checkpoint_path(folder)) ||
+         is_state(folder / "final.h5");
 }
 
 void refuse_foreign_files(const fs::path& folder) {

@@ -74,6 +74,14 @@ void refuse_busy(const std::filesystem::path& folder) {
   throw FileError(folder.string() + ": another run is writing there; wait for it, or choose another folder");
 }
 
+void remove_checkpoints(const std::filesystem::path& folder) {
+  for (const auto& path : {checkpoint_path(folder), previous_checkpoint_path(folder)}) {
+    std::error_code error;
+    if (std::filesystem::remove(path, error); error)
+      throw FileError(path.string() + ": cannot remove it: " + error.message());
+  }
+}
+
 ResultsFolder::ResultsFolder(ResultsOptions options)
     : options_(std::move(options)),
       made_(made(options_.folder)),
@@ -120,7 +128,11 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
   }
   frames_.emplace(options_.folder, options_.walls, resumed_.frames, options_.formats);
   run_json_.begin(world, resumes);
-  if (resumes) write_description();
+  if (!resumes) return;
+  write_description();
+  // The damaged one must not become the one before the next.
+  if (options_.from_previous)
+    std::filesystem::rename(previous_checkpoint_path(options_.folder), checkpoint_path(options_.folder));
 }
 
 void ResultsFolder::sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) {
@@ -163,7 +175,13 @@ void ResultsFolder::serialize(Archive& archive) {
 
 void ResultsFolder::checkpoint(const Checkpoint& checkpoint) {
   sync_to_disk(options_.folder / "series.h5");
-  write_checkpoint(options_.folder / "checkpoint.h5", options_.facts, checkpoint);
+  write_checkpoint(checkpoint_path(options_.folder), options_.facts, checkpoint,
+                   previous_checkpoint_path(options_.folder));
+}
+
+void ResultsFolder::final_state(const Checkpoint& state) {
+  sync_to_disk(options_.folder / "series.h5");
+  write_checkpoint(options_.folder / "final.h5", options_.facts, state);
 }
 
 void ResultsFolder::finish(const World& world, const RunSummary& summary) {
@@ -171,16 +189,8 @@ void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (summary.status != "failed")
     write_grains(options_.folder / "packing.txt", world, comment_on(world, options_.title));
   if (options_.picture && !kept_.empty()) draw_picture(world, summary);
-  if (summary.status == "done") keep_final_state();
   run_json_.finish(world, summary);
-}
-
-void ResultsFolder::keep_final_state() const {
-  const auto checkpoint = options_.folder / "checkpoint.h5";
-  std::error_code error;
-  if (!std::filesystem::exists(checkpoint, error)) return;  // none was asked for
-  std::filesystem::rename(checkpoint, options_.folder / "final.h5", error);
-  if (error) throw FileError(checkpoint.string() + ": cannot rename it to final.h5: " + error.message());
+  if (summary.status == "done") remove_checkpoints(options_.folder);
 }
 
 void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) const {

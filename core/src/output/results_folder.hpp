@@ -42,16 +42,22 @@ struct ResultsOptions {
   std::vector<WallShape> walls;
   std::vector<std::string> formats = {};  ///< of frames, beside HDF5
   std::optional<PictureRequest> picture;
+  bool from_previous = false;  ///< resumes from the checkpoint before the last one
   Flushing flushing = {};
 };
 
 /// Throws FileError: another run is writing to the folder.
 [[noreturn]] void refuse_busy(const std::filesystem::path& folder);
 
+/// Removes the checkpoints of a run that is done, in case it was killed before it did. Throws FileError.
+void remove_checkpoints(const std::filesystem::path& folder);
+
 /// Writes at the start run.json and description.json; during the run series.h5, frames/, frames.xdmf, grains.pvd and
-/// walls.pvd for VTK, run.json and checkpoint.h5, whose last one becomes final.h5 when the run is done; at the end
-/// packing.txt (`x y z radius` in m, by id, in full precision; not for a failed run), picture.svg, and run.json last,
-/// so that its status implies that the rest is complete. All functions throw FileError for write errors.
+/// walls.pvd for VTK, run.json, checkpoint.h5 and the one before it, checkpoint-previous.h5; at the end packing.txt
+/// (`x y z radius` in m, by id, in full precision; not for a failed run), picture.svg, and run.json last, so that its
+/// status implies that the rest is complete. When the run is done, final.h5 has its last state and the checkpoints are
+/// removed, only then, as a run that is killed at its end resumes from them. All functions throw FileError for write
+/// errors.
 class ResultsFolder final : public Recorder {
  public:
   /// Creates the folder. Throws FileError if that fails, if another run is writing to it, if it holds a run and
@@ -72,6 +78,8 @@ class ResultsFolder final : public Recorder {
 
   /// Writes checkpoint.h5, once the series it belongs to is on the disk.
   void checkpoint(const Checkpoint& checkpoint);
+  /// Writes final.h5, before finish().
+  void final_state(const Checkpoint& state);
 
  private:
   /// A channel of the picture, kept in memory.
@@ -91,7 +99,6 @@ class ResultsFolder final : public Recorder {
   void draw_picture(const World& world, const RunSummary& summary) const;
 
   void write_description() const;
-  void keep_final_state() const;
   void discard() noexcept;
 
   ResultsOptions options_;

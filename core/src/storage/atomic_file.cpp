@@ -39,6 +39,14 @@ void sync_to_disk(const std::filesystem::path& path) {
   if (!done) fail(path, error);
 }
 
+void sync_folder(const std::filesystem::path& folder) {
+  const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool done = file >= 0 && (::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == EBADF);
+  const int error = errno;
+  if (file >= 0) ::close(file);
+  if (!done) fail(folder, error);
+}
+
 void write_atomically(const std::filesystem::path& path, std::string_view text) {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary_path(path).c_str(), "wb"), std::fclose);
   if (!file) fail(path, errno);

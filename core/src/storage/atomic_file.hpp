@@ -15,6 +15,10 @@ void publish(const std::filesystem::path& path);
 /// Returns when a file is on disk and survives a crash of the machine. Throws FileError.
 void sync_to_disk(const std::filesystem::path& path);
 
+/// Returns when the names of the files in a folder are on disk. Throws FileError; file systems that cannot do it are no
+/// error.
+void sync_folder(const std::filesystem::path& folder);
+
 /// Writes a temporary file and renames it. Throws FileError with the system's reason; the old file then stays.
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 
