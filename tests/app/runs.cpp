@@ -321,6 +321,19 @@ TEST_F(Runs, ContinueAfterADiskWasFull) {
                               "checkpoint: 'grit run --resume small/results'\n")));
 }
 
+TEST_F(Runs, ReportThatTheirSeriesWereRemoved) {
+  Program program(
+      grit_with({"run", "two.json", "--set", "/stages/0/until/value=1000000000", "--set", "/stages/0/limit=\"2000 h\"",
+                 "--set", "/output/frames/every_steps=1000000000", "--set", "/probes/packing/every_steps=10000"}),
+      folder.path());
+  ASSERT_TRUE(program.wait_for("1/1 part"));
+  std::filesystem::remove(folder / "results/two/series.h5");
+  program.interrupt();
+  const auto outcome = program.finish();
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("results/two/series.h5: was removed or replaced during the run"));
+}
+
 class Interrupted : public Runs, public testing::WithParamInterface<int> {};
 
 TEST_P(Interrupted, RunsAreSaved) {

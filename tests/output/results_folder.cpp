@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <boost/property_tree/xml_parser.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
@@ -223,6 +224,91 @@ TEST(ResultsFolder, ContinuesAResumedRun) {
   EXPECT_EQ(run.at("stages").size(), 2u);
   EXPECT_EQ(run.at("resumed_at_step"), 20);
   EXPECT_EQ(run.at("resumed"), 1);
+}
+
+/// A run of four samples and frames, the last two after its checkpoint, that was killed.
+struct KilledRun {
+  KilledRun() {
+    ResultsFolder results(options(folder / "run"));
+    results.begin(world, probes);
+    for (world.steps = 10; world.steps <= 40; world.steps += 10) {
+      sample(results, world, 0.001 * static_cast<double>(world.steps), 0.5);
+      results.frame(world, {});
+      if (world.steps != 20) continue;
+      results.flush(), state = saved_state(results);
+      results.checkpoint({"stage", 0, 20, {}});
+    }
+    results.flush();
+  }
+  /// Continues it by a step. Throws what restoring it throws.
+  void resume() {
+    auto more = options(folder / "run");
+    more.existing = Existing::resume;
+    ResultsFolder results(more);
+    restore_state(results, state);
+    world.steps = 20;
+    results.begin(world, probes);
+    world.steps = 21;
+    sample(results, world, 0.002, 0.6);
+    results.flush();
+  }
+  std::vector<int> steps() const {
+    return hdf5::File(folder / "run/series.h5", hdf5::Mode::read).group("test").dataset("step").read<int>();
+  }
+  std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "run"))
+      if (entry.is_regular_file()) all[entry.path().string()] = text_of(entry.path());
+    return all;
+  }
+
+  const Folder folder;
+  NumberedWorld world = world_of_two();
+  std::vector<std::byte> state;
+};
+
+TEST(ResultsFolder, RestoresTheSeriesWhateverStateTheyAreIn) {
+  KilledRun run;
+  const auto series = run.folder / "run/series.h5";
+  const std::string whole = text_of(series);
+  const auto journal = run.folder / "run/series.journal";
+  const std::string longer = text_of(journal);
+  const auto restored_from = [&](const std::string& bytes) {
+    std::ofstream(series, std::ios::binary) << bytes;
+    std::ofstream(journal, std::ios::binary) << longer << "half of a sample";
+    run.resume();
+    EXPECT_THAT(run.steps(), ElementsAre(10, 20, 21)) << bytes.size() << " of " << whole.size() << " bytes";
+  };
+  for (std::size_t part = 0; part < 12; ++part) restored_from(whole.substr(0, whole.size() * part / 12));
+  restored_from(whole);
+  restored_from(whole + std::string(5000, '\0'));
+  restored_from(std::string(whole.size(), '\0'));
+  std::filesystem::remove(series);
+  run.resume();
+  EXPECT_THAT(run.steps(), ElementsAre(10, 20, 21));
+}
+
+TEST(ResultsFolder, ChangesNothingIfItCannotBeResumed) {
+  KilledRun run;
+  const auto refused_because = [&](const std::string& file) {
+    const auto before = run.files();
+    EXPECT_THAT(error_of<FileError>([&] { run.resume(); }), HasSubstr(file));
+    EXPECT_EQ(run.files(), before);
+  };
+  const std::string frame = text_of(run.folder / "run/frames/000001.h5");
+  std::ofstream(run.folder / "run/frames/000001.h5") << "damaged";
+  refused_because("frames/000001.h5: cannot read");
+  std::ofstream(run.folder / "run/frames/000001.h5", std::ios::binary) << frame;
+  const std::string journal = text_of(run.folder / "run/series.journal");
+  std::filesystem::resize_file(run.folder / "run/series.journal", 30);
+  refused_because("series.journal: ");
+  std::ofstream(run.folder / "run/series.journal", std::ios::binary) << journal;
+  // To free space.
+  std::filesystem::remove(run.folder / "run/frames/000000.h5");
+  run.resume();
+  EXPECT_THAT(text_of(run.folder / "run/frames.xdmf"),
+              AllOf(HasSubstr("frames/000001.h5:"), testing::Not(HasSubstr("frames/000000.h5:"))));
+  EXPECT_FALSE(std::filesystem::exists(run.folder / "run/frames/000002.h5"));
 }
 
 /// A run that is killed while it writes its last results resumes from there.

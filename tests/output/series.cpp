@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
+
 #include "folder.hpp"
 #include "grit/error.hpp"
 
@@ -100,6 +102,20 @@ TEST(Series, ContinuesFromACheckpoint) {
   other[1].channels[0].shape = {4};
   EXPECT_THAT(error_of<FileError>([&] { Series(folder / "series.h5", other, kept); }),
               testing::AllOf(HasSubstr("series.h5/profile/velocity"), HasSubstr("another shape")));
+}
+
+TEST(Series, ReportsThatItWasRemovedOrReplaced) {
+  const Folder folder;
+  Series removed(folder / "removed.h5", probes), replaced(folder / "replaced.h5", probes);
+  append(removed, 1), append(replaced, 1);
+  removed.flush();
+  std::filesystem::remove(folder / "removed.h5");
+  const auto flush = [&] { removed.flush(); };
+  EXPECT_THAT(error_of<FileError>(flush), HasSubstr("removed.h5: was removed or replaced during the run"));
+  std::ofstream(folder / "another.h5") << "another";
+  std::filesystem::rename(folder / "another.h5", folder / "replaced.h5");
+  EXPECT_THAT(error_of<FileError>([&] { replaced.close(); }), HasSubstr("replaced.h5: was removed or replaced"));
+  EXPECT_EQ(text_of(folder / "replaced.h5"), "another");
 }
 
 // A child process writes and reports the number of samples after each flush; it is killed in between.

@@ -162,6 +162,19 @@ TEST_F(Resume, ContinuesAKilledRun) {
   expect_same_results("whole", "killed");
 }
 
+TEST_F(Resume, NeedsNoWholeSeries) {
+  ASSERT_EQ(grit(run("whole")).status, 0);
+  kill("killed");
+  const auto series = folder / "killed/series.h5";
+  std::filesystem::resize_file(series, std::filesystem::file_size(series) / 3);
+  kill("killed", {"--resume"});
+  std::filesystem::remove(series);
+  const auto rest = grit(run("killed", {"--resume"}));
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  expect_same_results("whole", "killed");
+  EXPECT_FALSE(std::filesystem::exists(folder / "killed/series.journal"));
+}
+
 TEST_F(Resume, GoesOnFromTheCheckpointBeforeIfTheLastIsDamaged) {
   ASSERT_EQ(grit(run("whole")).status, 0);
   kill("killed");

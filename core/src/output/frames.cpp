@@ -201,7 +201,7 @@ std::string collection(const std::string& name, const std::string& grids) {
 
 Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept,
                std::span<const std::string> formats)
-    : results_(results), walls_(std::move(walls)) {
+    : results_(results), walls_(std::move(walls)), synced_(kept) {
   for (const FrameExport& one : frame_exports())
     if (std::ranges::find(formats, one.format) != formats.end()) exports_.push_back(&one);
   const auto folder = results_ / "frames";
@@ -209,8 +209,7 @@ Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> wall
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder.string() + ": cannot make the folder: " + error.message());
 
-  for (std::size_t number = 0; number < kept; ++number)
-    instants_.push_back(instant_of(hdf5::File(folder / frame_name(number), hdf5::Mode::read)));
+  for (std::size_t number = 0; number < kept; ++number) instants_.push_back(kept_instant(folder / frame_name(number)));
   remove_later();
   write_indices();
   const auto is_written = [&](const FrameExport& one) { return std::ranges::find(exports_, &one) != exports_.end(); };
@@ -264,6 +263,30 @@ Frames::Instant Frames::instant_of(const hdf5::File& file) {
   return instant;
 }
 
+std::optional<Frames::Instant> Frames::kept_instant(const std::filesystem::path& path) try {
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  return instant_of(hdf5::File(path, hdf5::Mode::read));
+} catch (const FileError& error) {
+  throw FileError(std::string(error.what()) + "; to continue without this frame, remove it");
+}
+
+void Frames::sync() {
+  constexpr std::size_t few = 32;
+  const auto folder = results_ / "frames";
+  const auto sync_one = [&](std::size_t number, const char* suffix) {
+    const auto path = folder / frame_name(number, suffix);
+    if (std::filesystem::exists(path)) sync_to_disk(path);  // else it was removed to free space
+  };
+  if (instants_.size() - synced_ > few) sync_file_system(folder);
+  else
+    for (std::size_t number = synced_; number < instants_.size(); ++number) {
+      sync_one(number, ".h5");
+      for (const FrameExport* one : exports_) sync_one(number, one->suffix);
+    }
+  if (synced_ < instants_.size()) sync_folder(folder);
+  synced_ = instants_.size();
+}
+
 void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   const auto path = results_ / "frames" / frame_name(instants_.size());
   hdf5::File file(temporary_path(path), hdf5::Mode::replace);
@@ -300,7 +323,7 @@ void Frames::write_collection(const FrameExport& one) const {
   std::vector<TimedFile> files;
   for (std::size_t number = 0; number < instants_.size(); ++number) {
     const std::string file = "frames/" + frame_name(number, one.suffix);
-    if (std::filesystem::exists(results_ / file)) files.push_back({instants_[number].time, file});
+    if (instants_[number] && std::filesystem::exists(results_ / file)) files.push_back({instants_[number]->time, file});
   }
   write_atomically(results_ / one.collection, vtk_collection(files));
 }
@@ -309,7 +332,8 @@ void Frames::write_xdmf() const {
   std::string grains, contacts;
   std::map<std::string, std::string> walls;
   for (std::size_t number = 0; number < instants_.size(); ++number) {
-    const auto& instant = instants_[number];
+    if (!instants_[number]) continue;
+    const Instant& instant = *instants_[number];
     const FrameIndex index(number, instant.time);
     std::vector<Attribute> columns{radius, velocity, spin, id, material};
     if (instant.clump) columns.push_back(clump);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,13 +20,16 @@ struct FrameExport;
 /// A file appears under its name only when it is whole. All functions throw FileError.
 class Frames {
  public:
-  /// Keeps the first `kept` existing frames and removes later ones, in all formats. `formats`: those of FrameExport, in
-  /// which frames are written.
+  /// Keeps the first `kept` frames and removes later ones, in all formats. Frames that were removed are left out of the
+  /// index; a damaged one is an error, before anything is changed. `formats`: those of FrameExport, in which frames are
+  /// written.
   Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept = 0,
          std::span<const std::string> formats = {});
 
   void write(const World& world, std::span<const FieldGroup> fields);
   std::size_t count() const { return instants_.size(); }
+  /// Returns when all frames are on disk.
+  void sync();
 
  private:
   struct Instant {
@@ -40,6 +44,7 @@ class Frames {
     std::vector<WallField> on_walls;                         ///< fields by triangle
   };
   static Instant instant_of(const hdf5::File& file);
+  static std::optional<Instant> kept_instant(const std::filesystem::path& path);
 
   void remove_later() const;
   void write_indices() const;
@@ -49,7 +54,8 @@ class Frames {
   std::filesystem::path results_;
   std::vector<WallShape> walls_;
   std::vector<const FrameExport*> exports_;
-  std::vector<Instant> instants_;
+  std::vector<std::optional<Instant>> instants_;  ///< none of a frame that was removed before the run was resumed
+  std::size_t synced_;                            ///< number of frames on disk
 };
 
 }  // namespace grit

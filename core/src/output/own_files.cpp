@@ -22,27 +22,21 @@ namespace fs = std::filesystem;
 constexpr const char* how_to_keep = ": it would be lost; move it away, or choose another folder (--out DIR)";
 
 // In the order in which they are removed: first those from which a run would be resumed.
-constexpr std::array results{"checkpoint.h5",
-                             "checkpoint-previous.h5",
-                             "checkpoint-previous.h5",
-                             "final.h5",
-                             "series.journal",
-                             "series.h5",
-                             "frames.xdmf",
-                             "grains.pvd",
-                             "walls.pvd",
-                             "packing.txt",
-                             "picture.svg",
-                             "report.html"};
-constexpr std::array replaced{"run.json", "description.json"};
+constexpr std::array run_files{"checkpoint.h5", "checkpoint-previous.h5",
+                               "final.h5",      "series.journal",
+                               "series.h5",     "frames.xdmf",
+                               "grains.pvd",    "walls.pvd",
+                               "packing.txt",   "picture.svg",
+                               "report.html"};
+constexpr std::array rewritten_files{"run.json", "description.json"};
 // Of `grit report --png`; a run does not write them.
-constexpr std::array pictures{"curves", "curves-overlaid", "grains", "layers", "force-chains", "linear-chains"};
+constexpr std::array picture_names{"curves", "curves-overlaid", "grains", "layers", "force-chains", "linear-chains"};
 constexpr std::array picture_beginnings{"profiles-", "directions-", "map-"};
 
 /// The names in a folder of results that a run writes.
-std::vector<std::string> names() {
-  std::vector<std::string> all(results.begin(), results.end());
-  all.insert(all.end(), replaced.begin(), replaced.end());
+std::vector<std::string> names_of_a_run() {
+  std::vector<std::string> all(run_files.begin(), run_files.end());
+  all.insert(all.end(), rewritten_files.begin(), rewritten_files.end());
   for (std::size_t i = 0, files = all.size(); i < files; ++i) all.push_back(temporary_path(all[i]).string());
   return all;
 }
@@ -110,13 +104,13 @@ bool is_own_page(fs::path path) {
   throw FileError(path.string() + ": " + why + how_to_keep);
 }
 
-constexpr const char* foreign = "grit did not write this file";
+constexpr const char* not_own = "grit did not write this file";
 
 void refuse_foreign_frames(const fs::path& folder) {
   std::error_code none;
-  if (is_there(folder) && !fs::is_directory(folder, none)) refuse(folder, foreign);
+  if (is_there(folder) && !fs::is_directory(folder, none)) refuse(folder, not_own);
   for (const auto& path : entries(folder))
-    if (!is_file(path) || !is_frame(path.filename().string())) refuse(path, foreign);
+    if (!is_file(path) || !is_frame(path.filename().string())) refuse(path, not_own);
 }
 
 /// Of a folder that holds a run.
@@ -139,20 +133,20 @@ bool holds_a_run(const fs::path& folder) {
 
 void refuse_foreign_files(const fs::path& folder) {
   const bool has_run = holds_a_run(folder);
-  for (const std::string& name : names())
-    if (is_there(folder / name) && !(has_run && is_file(folder / name))) refuse(folder / name, foreign);
+  for (const std::string& name : names_of_a_run())
+    if (is_there(folder / name) && !(has_run && is_file(folder / name))) refuse(folder / name, not_own);
   for (const char* page : {"picture.svg", "report.html"})
-    if (is_there(folder / page) && !is_own_page(folder / page)) refuse(folder / page, foreign);
+    if (is_there(folder / page) && !is_own_page(folder / page)) refuse(folder / page, not_own);
   refuse_foreign_frames(folder / "frames");
   if (!has_run) {
-    if (const auto all = entries(folder / "frames"); !all.empty()) refuse(all.front(), foreign);
+    if (const auto all = entries(folder / "frames"); !all.empty()) refuse(all.front(), not_own);
     return;
   }
   refuse_edited_description(folder);
 }
 
 void refuse_inputs(const fs::path& folder, const std::set<fs::path>& inputs) {
-  const auto all = names();
+  const auto all = names_of_a_run();
   std::error_code none;
   for (const fs::path& input : inputs) {
     if (input.empty() || !fs::exists(input, none)) continue;
@@ -175,7 +169,7 @@ std::set<fs::path> paths_in(const Description& description) {
 
 void remove_results(const fs::path& folder) {
   std::vector<fs::path> old;
-  for (const char* name : results) {
+  for (const char* name : run_files) {
     old.push_back(folder / name);
     old.push_back(temporary_path(folder / name));
   }
@@ -184,7 +178,7 @@ void remove_results(const fs::path& folder) {
   for (const auto& path : entries(folder)) {
     const std::string name = path.stem().string();
     const bool is_picture =
-        std::ranges::find(pictures, name) != pictures.end() ||
+        std::ranges::find(picture_names, name) != picture_names.end() ||
         std::ranges::any_of(picture_beginnings, [&](const char* begin) { return name.starts_with(begin); });
     // The PNG file, known by its SVG file, comes before it.
     if (is_picture && (path.extension() == ".svg" || path.extension() == ".png") && is_own_page(path))

@@ -75,7 +75,7 @@ void refuse_busy(const std::filesystem::path& folder) {
 }
 
 void remove_checkpoints(const std::filesystem::path& folder) {
-  for (const auto& path : {checkpoint_path(folder), previous_checkpoint_path(folder)}) {
+  for (const auto& path : {checkpoint_path(folder), previous_checkpoint_path(folder), folder / "series.journal"}) {
     std::error_code error;
     if (std::filesystem::remove(path, error); error)
       throw FileError(path.string() + ": cannot remove it: " + error.message());
@@ -100,7 +100,8 @@ ResultsFolder::~ResultsFolder() {
 
 void ResultsFolder::discard() noexcept {
   std::error_code none;
-  for (const char* file : {"run.json", "description.json"}) std::filesystem::remove(options_.folder / file, none);
+  for (const char* file : {"run.json", "description.json", "series.journal"})
+    std::filesystem::remove(options_.folder / file, none);
   for (const auto& folder : made_) std::filesystem::remove(folder, none);  // if it is empty
 }
 
@@ -117,16 +118,16 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
       kept_.push_back({channels.at(options_.picture->y[i], fmt::format("/output/picture/y/{}", i))});
     grain_view(world, {}, options_.picture->view, options_.picture->color);
   }
-  const auto path = options_.folder / "series.h5";
   const bool resumes = options_.existing == Existing::resume;
   if (resumes) {
-    series_.emplace(path, probes, resumed_.samples, options_.flushing);
+    restore(probes);
     for (std::size_t i = 0; i < kept_.size() && i < resumed_.steps.size(); ++i)
       kept_[i].steps = resumed_.steps[i], kept_[i].values = resumed_.values[i];
   } else {
-    series_.emplace(path, probes, options_.flushing);
+    journal_.emplace(options_.folder / "series.journal");
+    series_.emplace(options_.folder / "series.h5", probes, options_.flushing);
+    frames_.emplace(options_.folder, options_.walls, 0, options_.formats);
   }
-  frames_.emplace(options_.folder, options_.walls, resumed_.frames, options_.formats);
   run_json_.begin(world, resumes);
   if (!resumes) return;
   write_description();
@@ -135,7 +136,25 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
     std::filesystem::rename(previous_checkpoint_path(options_.folder), checkpoint_path(options_.folder));
 }
 
+/// Nothing is changed unless everything can be restored: series.h5 may be in any state.
+void ResultsFolder::restore(std::span<const ProbeGroup> probes) {
+  const auto path = options_.folder / "series.h5", part = temporary_path(path);
+  journal_.emplace(options_.folder / "series.journal", resumed_.journal);
+  restore_series(*journal_, probes, resumed_.samples, part);
+  try {
+    frames_.emplace(options_.folder, options_.walls, resumed_.frames, options_.formats);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);
+    throw;
+  }
+  publish(path);
+  journal_->cut();
+  series_.emplace(path, probes, resumed_.samples, options_.flushing);
+}
+
 void ResultsFolder::sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) {
+  journal_->append(probe, world.time(), world.step(), values);
   series_->append(probe, world.time(), world.step(), values);
   for (auto& kept : kept_)
     if (kept.channel.probe == probe) {
@@ -151,15 +170,18 @@ void ResultsFolder::frame(const World& world, std::span<const FieldGroup> fields
 }
 
 void ResultsFolder::stage_ended(const World& world, const std::string& what) {
-  series_->flush();
+  flush();
   run_json_.stage_ended(world, what);
 }
 
-void ResultsFolder::flush() { series_->flush(); }
+void ResultsFolder::flush() {
+  journal_->flush();
+  series_->flush();
+}
 
 void ResultsFolder::serialize(Archive& archive) {
   if (!archive.restoring()) {
-    resumed_ = {series_->samples(), frames_->count(), {}, {}};
+    resumed_ = {series_->samples(), frames_->count(), {}, {}, journal_->extent()};
     for (const Kept& kept : kept_) resumed_.steps.push_back(kept.steps), resumed_.values.push_back(kept.values);
   }
   archive(resumed_, run_json_);
@@ -173,24 +195,39 @@ void ResultsFolder::serialize(Archive& archive) {
   std::ranges::move(clipped, std::back_inserter(options_.walls));
 }
 
+void ResultsFolder::sync(std::initializer_list<const char*> files) const {
+  for (const char* file : files)
+    if (std::filesystem::exists(options_.folder / file)) sync_to_disk(options_.folder / file);
+  sync_folder(options_.folder);
+  for (const auto& folder : made_) sync_folder(folder.parent_path());
+}
+
 void ResultsFolder::checkpoint(const Checkpoint& checkpoint) {
-  sync_to_disk(options_.folder / "series.h5");
+  journal_->sync();
+  frames_->sync();
+  sync({"run.json", "description.json"});
   write_checkpoint(checkpoint_path(options_.folder), options_.facts, checkpoint,
                    previous_checkpoint_path(options_.folder));
 }
 
 void ResultsFolder::final_state(const Checkpoint& state) {
-  sync_to_disk(options_.folder / "series.h5");
   write_checkpoint(options_.folder / "final.h5", options_.facts, state);
 }
 
 void ResultsFolder::finish(const World& world, const RunSummary& summary) {
-  if (series_) series_->close();
+  series_->close();
   if (summary.status != "failed")
     write_grains(options_.folder / "packing.txt", world, comment_on(world, options_.title));
   if (options_.picture && !kept_.empty()) draw_picture(world, summary);
   run_json_.finish(world, summary);
-  if (summary.status == "done") remove_checkpoints(options_.folder);
+  if (summary.status == "done") {
+    frames_->sync();
+    sync({"series.h5", "packing.txt", "picture.svg", "run.json", "description.json"});
+  } else if (has_checkpoint(options_.folder)) {
+    return;
+  }
+  journal_.reset();
+  remove_checkpoints(options_.folder);
 }
 
 void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "output/frames.hpp"
 #include "output/run_json.hpp"
 #include "output/series.hpp"
+#include "output/series_journal.hpp"
 #include "output/single_channels.hpp"
 #include "run/recorder.hpp"
 
@@ -49,11 +51,12 @@ struct ResultsOptions {
 /// Throws FileError: another run is writing to the folder.
 [[noreturn]] void refuse_busy(const std::filesystem::path& folder);
 
-/// Removes the checkpoints of a run that is done, in case it was killed before it did. Throws FileError.
+/// Removes from the folder of a run that is done what it needed to be resumed. Throws FileError.
 void remove_checkpoints(const std::filesystem::path& folder);
 
 /// Writes at the start run.json and description.json; during the run series.h5, frames/, frames.xdmf, grains.pvd and
-/// walls.pvd for VTK, run.json, checkpoint.h5 and the one before it, checkpoint-previous.h5; at the end packing.txt
+/// walls.pvd for VTK, run.json, series.journal, checkpoint.h5 and the one before it, checkpoint-previous.h5; at the end
+/// packing.txt
 /// (`x y z radius` in m, by id, in full precision; not for a failed run), picture.svg, and run.json last, so that its
 /// status implies that the rest is complete. When the run is done, final.h5 has its last state and the checkpoints are
 /// removed, only then, as a run that is killed at its end resumes from them. All functions throw FileError for write
@@ -76,7 +79,7 @@ class ResultsFolder final : public Recorder {
   void serialize(Archive& archive) override;
   void finish(const World& world, const RunSummary& summary) override;
 
-  /// Writes checkpoint.h5, once the series it belongs to is on the disk.
+  /// Writes checkpoint.h5, once the samples and frames up to it are on disk.
   void checkpoint(const Checkpoint& checkpoint);
   /// Writes final.h5, before finish().
   void final_state(const Checkpoint& state);
@@ -93,12 +96,16 @@ class ResultsFolder final : public Recorder {
     std::vector<std::uint64_t> samples;  ///< of each probe
     std::uint64_t frames = 0;
     std::vector<std::vector<double>> steps, values;  ///< of the picture's channels
-    void serialize(Archive& archive) { archive(samples, frames, steps, values); }
+    SeriesJournal::Extent journal;
+    void serialize(Archive& archive) { archive(samples, frames, steps, values, journal); }
   };
 
   void draw_picture(const World& world, const RunSummary& summary) const;
 
   void write_description() const;
+  void restore(std::span<const ProbeGroup> probes);
+  /// Returns when these files of the folder are on disk, as far as they exist.
+  void sync(std::initializer_list<const char*> files) const;
   void discard() noexcept;
 
   ResultsOptions options_;
@@ -106,6 +113,7 @@ class ResultsFolder final : public Recorder {
   FolderLock lock_;
   RunJson run_json_;
   std::optional<Series> series_;
+  std::optional<SeriesJournal> journal_;
   std::optional<Frames> frames_;
   std::vector<Kept> kept_;  ///< x first, then the y of the picture
   /// Of the bodies at the last frame, if the picture is coloured by a field; and the step of that frame.

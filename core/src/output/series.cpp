@@ -55,7 +55,7 @@ class Marked {
 }  // namespace
 
 Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, Flushing flushing)
-    : mark_(path, WritingMark::Absent::make), file_(path, hdf5::Mode::replace), flushing_(flushing) {
+    : path_(path), mark_(path, WritingMark::Absent::make), file_(path, hdf5::Mode::replace), flushing_(flushing) {
   for (const auto& probe : probes) tables_.push_back(create(probe));
   file_.flush();
   mark_.clear();
@@ -63,7 +63,7 @@ Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> pr
 
 Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes,
                std::span<const std::uint64_t> kept, Flushing flushing)
-    : mark_(path, WritingMark::Absent::leave), file_(path, hdf5::Mode::change), flushing_(flushing) {
+    : path_(path), mark_(path, WritingMark::Absent::leave), file_(path, hdf5::Mode::change), flushing_(flushing) {
   if (kept.size() != probes.size())
     throw FileError(path.string() + ": is of a run with " + std::to_string(kept.size()) +
                     " probes, but the description has " + std::to_string(probes.size()) +
@@ -127,7 +127,13 @@ void Series::write() {
   flushed_ = std::chrono::steady_clock::now();
 }
 
+void Series::expect_own_file() const {
+  if (!mark_.is_of(path_))
+    throw FileError(path_.string() + ": was removed or replaced during the run, whose samples would be lost");
+}
+
 void Series::flush() {
+  expect_own_file();
   const Marked marked(mark_);
   write();
   file_.flush();
@@ -140,6 +146,7 @@ std::vector<std::uint64_t> Series::samples() const {
 }
 
 void Series::close() {
+  expect_own_file();
   const Marked marked(mark_);
   write();
   file_.close();

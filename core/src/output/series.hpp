@@ -22,8 +22,8 @@ struct Flushing {
 /// channel's shape; attributes `units` (UDUNITS) and `long_name`. During a flush, when the file is temporarily
 /// inconsistent, it has a WritingMark. Flushed samples stay readable if the process is killed. If it is killed during a
 /// flush that opens a new chunk (2048 values), the samples of this chunk may be counted but unreadable: 7 of 600
-/// writers that were killed while flushing continuously left such a tail. Resuming the run repairs it. All functions
-/// throw FileError.
+/// writers that were killed while flushing continuously left such a tail. Resuming the run restores the file from its
+/// SeriesJournal. All functions throw FileError, also if the file was removed or replaced meanwhile.
 class Series {
  public:
   Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, Flushing flushing = {});
@@ -56,7 +56,10 @@ class Series {
   Table create(const ProbeGroup& probe);
   Table reopen(const ProbeGroup& probe, std::uint64_t samples);
   void write();
+  /// Throws FileError if it is not the file at its path any more: samples would be lost without a word.
+  void expect_own_file() const;
 
+  std::filesystem::path path_;
   WritingMark mark_;  ///< outlives the file, which is opened and closed while marked
   hdf5::File file_;
   std::vector<Table> tables_;

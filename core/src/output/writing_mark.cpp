@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "storage/atomic_file.hpp"
+
 namespace grit {
 namespace {
 
@@ -33,6 +35,8 @@ WritingMark::~WritingMark() {
 
 void WritingMark::set() const { put(file_, F_WRLCK); }
 void WritingMark::clear() const { put(file_, F_UNLCK); }
+
+bool WritingMark::is_of(const std::filesystem::path& file) const { return file_ < 0 || is_still_at(file, file_); }
 
 bool is_being_written(const std::filesystem::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);

@@ -18,6 +18,8 @@ class WritingMark {
 
   void set() const;
   void clear() const;
+  /// Whether its file is still that of this path; true if it could not be opened.
+  bool is_of(const std::filesystem::path& file) const;
 
  private:
   int file_;

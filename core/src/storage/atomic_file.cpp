@@ -1,6 +1,7 @@
 #include "storage/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -37,6 +38,21 @@ void sync_to_disk(const std::filesystem::path& path) {
   const int error = errno;
   if (file >= 0) ::close(file);
   if (!done) fail(path, error);
+}
+
+void sync_file_system(const std::filesystem::path& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool done = file >= 0 && ::syncfs(file) == 0;
+  const int error = errno;
+  if (file >= 0) ::close(file);
+  if (!done) fail(folder, error);
+}
+
+bool is_still_at(const std::filesystem::path& path, int file) {
+  struct stat opened {
+  }, found{};
+  return ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &found) == 0 && opened.st_dev == found.st_dev &&
+         opened.st_ino == found.st_ino;
 }
 
 void sync_folder(const std::filesystem::path& folder) {

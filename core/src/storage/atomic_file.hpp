@@ -15,6 +15,13 @@ void publish(const std::filesystem::path& path);
 /// Returns when a file is on disk and survives a crash of the machine. Throws FileError.
 void sync_to_disk(const std::filesystem::path& path);
 
+/// Returns when all that was written to the file system of a folder is on disk: faster than sync_to_disk() for many
+/// files. Throws FileError.
+void sync_file_system(const std::filesystem::path& folder);
+
+/// Whether an open file is that of this path: it may have been removed or replaced.
+bool is_still_at(const std::filesystem::path& path, int file);
+
 /// Returns when the names of the files in a folder are on disk. Throws FileError; file systems that cannot do it are no
 /// error.
 void sync_folder(const std::filesystem::path& folder);
