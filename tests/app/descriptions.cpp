@@ -1086,6 +1086,25 @@ TEST(Check, ReportsTheRun) {
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
+TEST(Check, ReportsTheNumberAndSizeOfFrames) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto frames = [&](const std::string& set) {
+    const std::string out = grit_in(folder.path(), {"check", "two.json", "--set", set}).out;
+    const auto at = out.find("\nframes: ");
+    return at == std::string::npos ? "" : out.substr(at + 1, out.find('\n', at + 1) - at - 1);
+  };
+  EXPECT_THAT(frames("/seed=1"), testing::MatchesRegex("frames: about 3 of [0-9.e+]+ kB, [0-9.e+]+ [kM]B in all"))
+      << "at the steps 0, 100 and 200, as a run writes them";
+  EXPECT_THAT(frames("/output/frames={\"every_steps\": 1}"), HasSubstr("about 201 of "));
+  EXPECT_THAT(frames("/stages/0/until={\"type\": \"unbalanced-force\", \"below\": 1e-3}"),
+              HasSubstr("frames: at most "));
+  EXPECT_EQ(frames("/output/frames=null"), "");
+  ASSERT_EQ(grit_in(folder.path(), {"run", "two.json"}).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "results/two/frames/000002.h5"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results/two/frames/000003.h5"));
+}
+
 TEST(Check, ReportsBodiesInsertedLater) {
   const OwnFolder folder;
   json scene = json::parse(two_grains);

@@ -1,13 +1,16 @@
 #include "output/frames.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <boost/property_tree/xml_parser.hpp>
 #include <sstream>
+#include <utility>
 
 #include "fake_world.hpp"
 #include "folder.hpp"
 #include "grit/error.hpp"
+#include "output/frame_size.hpp"
 #include "storage/frame_state.hpp"
 #include "storage/hdf5.hpp"
 #include "support/scene.hpp"
@@ -244,6 +247,50 @@ TEST(Frames, IndexNamesAllDatasets) {
                                     Pair("lid", ElementsAre(1, 1))));
   EXPECT_THAT(items, ElementsAre(Pair("contacts", ElementsAre(6, 6)), Pair("grains", ElementsAre(6, 8)),
                                  Pair("lid", ElementsAre(2, 2))));
+}
+
+TEST(Frames, DoNotCostMoreTheMoreThereAre) {
+  const Folder folder;
+  Frames frames(folder.path(), {});
+  auto world = three_grains();
+  const auto index = folder / "frames.xdmf";
+  std::uintmax_t written = 0;
+  ino_t last = 0;
+  constexpr int count = 400;
+  for (int i = 0; i < count; ++i) {
+    world.now = i;
+    frames.write(world, {});
+    struct stat file {};
+    ASSERT_EQ(::stat(index.c_str(), &file), 0);
+    if (file.st_ino != std::exchange(last, file.st_ino)) written += static_cast<std::uintmax_t>(file.st_size);
+    boost::property_tree::ptree whole;
+    if (i % 50 == 0) EXPECT_NO_THROW(read_xml(index.string(), whole)) << i;
+  }
+  frames.update_indices();
+  EXPECT_LT(written, 60 * std::filesystem::file_size(index)) << "written anew with each frame it is 200 times that";
+  const std::string text = text_of(index);
+  for (int i = 0; i < count; ++i)
+    EXPECT_THAT(text, HasSubstr("frames/" + frame_name(static_cast<std::size_t>(i)) + ":/bodies/id")) << i;
+}
+
+TEST(Frames, HaveTheSizeThatCheckEstimates) {
+  NumberedWorld world;
+  for (std::uint32_t i = 0; i < 1000; ++i) world.add(i, {0.1 * i, 1.0 / 3, 0}, 0.05);
+  for (std::uint32_t i = 0; i + 3 < 1000; ++i)
+    for (std::uint32_t k = 1; k < 4; ++k)
+      world.contact.push_back({i, i + k, false, 0, Vec3::UnitX(), Vec3::UnitX(), Vec3::UnitX(), Vec3::Zero(), 4, 0.01});
+  world.rotation.assign(1000, Vec3::UnitX());
+  const std::vector<FieldGroup> fields{{"cells", {{"stress", "Pa", "", 9, std::vector<double>(9 * 500, 1.5)}}}};
+  const std::vector<std::vector<std::string>> formats{{}, {"vtk"}};
+  for (const auto& more : formats) {
+    const Folder folder;
+    Frames(folder.path(), lid, 0, more).write(world, fields);
+    double bytes = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "frames"))
+      bytes += static_cast<double>(entry.file_size());
+    const double contacts = static_cast<double>(world.contact.size());
+    EXPECT_NEAR(frame_bytes(world, {1000, contacts, 1}, fields, more) / bytes, 1, 0.15) << more.size();
+  }
 }
 
 TEST(Frames, FieldsOfAWallColourItsTriangles) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -30,6 +31,7 @@
 #include "lint/unused_motions.hpp"
 #include "lint/unused_scenario_parameters.hpp"
 #include "lint/unused_settings.hpp"
+#include "output/frame_size.hpp"
 #include "output/named_fields.hpp"
 #include "output/reference_curve.hpp"
 #include "output/single_channels.hpp"
@@ -37,6 +39,7 @@
 #include "simulation/expected_stages.hpp"
 #include "simulation/first_instant.hpp"
 #include "simulation/live_scene.hpp"
+#include "simulation/no_recorder.hpp"
 #include "simulation/prepared_sample.hpp"
 
 namespace grit {
@@ -53,6 +56,56 @@ constexpr double planning_speed = 12e6;
 // A cloud has no contacts yet; in a dense packing the critical step of the same grains is about this fraction of the
 // cloud's.
 constexpr double dense_step_fraction = 0.6;
+// Per body: a coordination number of 5, and some contacts with walls.
+constexpr double dense_contacts = 2.7;
+
+/// The number of frames of a cadence, and whether it is an upper bound; nothing if it does not follow from time.
+struct FrameCount {
+  double frames = 0;
+  bool at_most = false;
+};
+std::optional<FrameCount> frame_count(const Cadence& cadence, const std::vector<ExpectedStage>& stages, double dt) {
+  if (cadence.every_displacement || cadence.every_discharged) return std::nullopt;
+  FrameCount count{1};  // at the end
+  if (cadence.never()) return count;
+  for (const ExpectedStage& stage : stages) {
+    const double steps = stage.shown() / dt;
+    double frames = 0;
+    if (cadence.every_time) frames = std::max(frames, std::min(stage.shown() / *cadence.every_time, steps));
+    if (cadence.every_steps > 0) frames = std::max(frames, steps / static_cast<double>(cadence.every_steps));
+    count.frames += std::max(1.0, std::ceil(frames - 1e-9));  // the first at its start
+    count.at_most |= !stage.known && !stage.usual;
+  }
+  return count;
+}
+
+std::string size_text(double bytes) {
+  for (const auto& [unit, size] : {std::pair("TB", 1e12), {"GB", 1e9}, {"MB", 1e6}})
+    if (bytes >= size) return fmt::format("{:.3g} {}", bytes / size, unit);
+  return fmt::format("{:.3g} kB", bytes / 1e3);
+}
+
+/// What frames will take on the disk. `contacts`: of a dense packing, unless there are more.
+void print_frames(const SceneDescription& description, const World& world, const FrameContent& content,
+                  const std::vector<FieldGroup>& fields, const std::vector<ExpectedStage>& stages, double dt) {
+  const FramesDescription& frames = description.output.frames;
+  if (frames.never()) return;
+  const double each = frame_bytes(world, content, fields, frames.formats);
+  std::cout << "frames: ";
+  if (const auto count = frame_count(frames, stages, dt))
+    std::cout << (count->at_most ? "at most " : "about ") << fmt::format("{:.0f}", count->frames) << " of "
+              << size_text(each) << ", " << size_text(count->frames * each) << " in all\n";
+  else std::cout << size_text(each) << " each; their number depends on the run\n";
+}
+
+/// The fields of a probe in a frame at this instant; none if it cannot be sampled here.
+std::optional<FieldGroup> fields_of(Observer& observer, const World& world) try {
+  NoRecorder none;
+  observer.sample(0, world, none);
+  return observer.fields(world);
+} catch (const Error&) {  // it samples in later stages
+  return std::nullopt;
+}
 
 void check_one(const std::string& file, const Scene& scene, const Options& options, const Registry& registry) {
   const SceneDescription& description = *scene.description;
@@ -73,8 +126,13 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   }));
   at_first_instant(scene.document, [&] { kernel.find_forces(); });
   std::vector<ProbeGroup> probes;
-  for (const auto& [name, probe] : description.probes)
-    probes.push_back(Observer(name, probe, components.probes.at(name), kernel.world()).group());
+  std::vector<FieldGroup> fields;
+  for (const auto& [name, probe] : description.probes) {
+    Observer observer(name, probe, components.probes.at(name), kernel.world());
+    probes.push_back(observer.group());
+    if (description.output.frames.never() || !observer.in_frames()) continue;
+    if (auto one = fields_of(observer, kernel.world())) fields.push_back(std::move(*one));
+  }
   SingleChannels(probes).check(scene.document, description.output);  // as in a run
   check_fields(scene.document, description, kernel.world());
   const std::size_t bodies = kernel.world().positions().size();
@@ -123,7 +181,15 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     std::cout << wish.steps_per_impact << " steps per impact of two bodies; ";
   std::cout << "updated as contacts change\n";
   std::cout << "memory: " << std::lround(1e-6 * static_cast<double>(kernel.state().bytes())) + 1 << " MB now, about "
-            << std::lround(1e-6 * 700.0 * most_bodies) + 1 << " MB when dense\n\nstages\n";
+            << std::lround(1e-6 * 700.0 * most_bodies) + 1 << " MB when dense\n";
+  std::size_t triangles = 0;
+  for (const auto& [name, geometry] : live.geometries().all()) triangles += geometry->triangles().size() / 3;
+  const auto touching = static_cast<double>(kernel.world().contacts().size());
+  print_frames(
+      description, kernel.world(),
+      {.bodies = most_bodies, .contacts = std::max(touching, dense_contacts * most_bodies), .triangles = triangles},
+      fields, stages, dt);
+  std::cout << "\nstages\n";
 
   through_stages(description, scene.stages, [&](const SceneDescription& now, std::optional<std::size_t> i) {
     if (!i) return true;

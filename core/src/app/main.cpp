@@ -15,7 +15,7 @@ namespace grit {
 std::span<const Command> commands() {
   static constexpr std::array<Command, 9> all{{
       {"run", "FILE…", "Run descriptions, one after the other. Ctrl-C saves the results and stops.", run_command},
-      {"check", "FILE…", "Validate a description; report time step, memory and run time.", check_command},
+      {"check", "FILE…", "Validate a description; report time step, memory, frames and run time.", check_command},
       {"expand", "FILE", "Print a description with inheritance, --set and scenario resolved.", expand_command},
       {"schema", "", "Print the JSON Schema of descriptions, for editors.", schema_command},
       {"plugins", "[NAME]", "List the installed components, or one in detail.", plugins_command},

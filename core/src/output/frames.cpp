@@ -309,13 +309,23 @@ void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   for (const FrameExport* one : exports_)
     write_atomically(results_ / "frames" / frame_name(instants_.size(), one->suffix), one->text(world, walls_));
   instants_.push_back(std::move(instant));
-  write_indices();
+  // In all, at most eleven times the final indices and a thousandth of the time are written.
+  if (10 * (instants_.size() - indexed_) > indexed_ ||
+      std::chrono::steady_clock::now() - indexed_at_ > 1000 * indexing_)
+    write_indices();
 }
 
-void Frames::write_indices() const {
+void Frames::update_indices() {
+  if (indexed_ < instants_.size()) write_indices();
+}
+
+void Frames::write_indices() {
+  const auto began = std::chrono::steady_clock::now();
   write_xdmf();
   for (const FrameExport* one : exports_)
     if (one->collection != nullptr) write_collection(*one);
+  indexed_ = instants_.size(), indexed_at_ = std::chrono::steady_clock::now();
+  indexing_ = indexed_at_ - began;
 }
 
 /// Frames before a format was added have no file in it.

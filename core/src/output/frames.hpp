@@ -1,6 +1,7 @@
 // frames/000123.h5, one file per instant, frames.xdmf, which opens them all in ParaView, and files in other formats.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -17,7 +18,9 @@ struct FrameExport;
 
 /// Writes frames: /bodies sorted by id, /contacts, /walls/<name>, /probes/<name>/<field>; every dataset has `units` and
 /// `long_name`, the file `time`, `step`, `stage`. Beside each frame are the files of frame_exports() in these formats.
-/// A file appears under its name only when it is whole. All functions throw FileError.
+/// A file appears under its name only when it is whole. The indices are rewritten with a frame only while that is
+/// cheap, so that many frames do not cost more each: they may lack the last tenth of the frames until update_indices().
+/// All functions throw FileError.
 class Frames {
  public:
   /// Keeps the first `kept` frames and removes later ones, in all formats. Frames that were removed are left out of the
@@ -28,6 +31,8 @@ class Frames {
 
   void write(const World& world, std::span<const FieldGroup> fields);
   std::size_t count() const { return instants_.size(); }
+  /// Adds frames to the indices that they lack.
+  void update_indices();
   /// Returns when all frames are on disk.
   void sync();
 
@@ -47,7 +52,7 @@ class Frames {
   static std::optional<Instant> kept_instant(const std::filesystem::path& path);
 
   void remove_later() const;
-  void write_indices() const;
+  void write_indices();
   void write_collection(const FrameExport& one) const;
   void write_xdmf() const;
 
@@ -56,6 +61,9 @@ class Frames {
   std::vector<const FrameExport*> exports_;
   std::vector<std::optional<Instant>> instants_;  ///< none of a frame that was removed before the run was resumed
   std::size_t synced_;                            ///< number of frames on disk
+  std::size_t indexed_ = 0;                       ///< number of frames in the indices
+  std::chrono::steady_clock::time_point indexed_at_;
+  std::chrono::steady_clock::duration indexing_{};  ///< time that writing them took
 };
 
 }  // namespace grit

@@ -177,6 +177,7 @@ void ResultsFolder::stage_ended(const World& world, const std::string& what) {
 void ResultsFolder::flush() {
   journal_->flush();
   series_->flush();
+  frames_->update_indices();
 }
 
 void ResultsFolder::serialize(Archive& archive) {
@@ -216,6 +217,7 @@ void ResultsFolder::final_state(const Checkpoint& state) {
 
 void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   series_->close();
+  frames_->update_indices();
   if (summary.status != "failed")
     write_grains(options_.folder / "packing.txt", world, comment_on(world, options_.title));
   if (options_.picture && !kept_.empty()) draw_picture(world, summary);
