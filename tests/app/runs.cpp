@@ -337,6 +337,7 @@ TEST_F(Runs, ReportThatTheirSeriesWereRemoved) {
 class Interrupted : public Runs, public testing::WithParamInterface<int> {};
 
 TEST_P(Interrupted, RunsAreSaved) {
+  ::signal(GetParam(), SIG_DFL);  // a program that nohup started, these tests for one, keeps SIGHUP ignored
   Program program(
       grit_with({"run", "two.json", "--out", "results/two of them", "--set",
                  R"(/stages/0/until={"type": "time", "value": "1000 h"})", "--set", "/stages/0/limit=\"2000 h\"",
@@ -364,8 +365,37 @@ TEST_P(Interrupted, RunsAreSaved) {
     EXPECT_THAT(entry.path().string(), Not(EndsWith(".part")));
 }
 
-INSTANTIATE_TEST_SUITE_P(By, Interrupted, testing::Values(SIGINT, SIGTERM),
-                         [](const auto& info) { return info.param == SIGINT ? "CtrlC" : "Termination"; });
+INSTANTIATE_TEST_SUITE_P(By, Interrupted, testing::Values(SIGINT, SIGTERM, SIGHUP), [](const auto& info) {
+  return info.param == SIGINT ? "CtrlC" : info.param == SIGTERM ? "Termination" : "Hangup";
+});
+
+TEST_F(Runs, EndAtOnceWhileTheirBodiesArePlaced) {
+  auto scene = json::parse(two_grains);
+  // Close to the densest random cloud, so that grains find no place for long.
+  scene["bodies"]["grains"]["source"] = {{"type", "cloud"},
+                                         {"low", {0, 0, 0}},
+                                         {"high", {0.0656, 0.0656, 0.0656}},
+                                         {"count", 200000},
+                                         {"sizes", {{"type", "list"}, {"diameters", {0.001}}}}};
+  folder.write("dense.json", scene.dump());
+  Program program(grit_with({"run", "dense.json"}), folder.path());
+  ASSERT_TRUE(program.wait_for("dense.json: two grains"));
+  program.interrupt();
+  const auto outcome = program.finish();
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("interrupted before the run began; nothing was written"),
+                                 Not(HasSubstr("200000 bodies"))));
+  EXPECT_FALSE(exists("results"));
+}
+
+TEST_F(Runs, ReportThreadsThatCannotStart) {
+  const std::string limited = "ulimit -S -v 1500000; \"" GRIT_BINARY "\" ";
+  if (shell(folder.path(), limited + "--version").status != 0) GTEST_SKIP() << "too little memory for this build";
+  const auto outcome = shell(folder.path(), limited + "run two.json --quiet --threads 1000");
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("cannot start 1000 threads, only "), HasSubstr("--threads")));
+  EXPECT_FALSE(exists("results"));
+}
 
 TEST_F(Runs, AnInterruptedOneKeepsTheOthersFromBeginning) {
   folder.write("other.json", two_grains);

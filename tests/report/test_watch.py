@@ -182,6 +182,23 @@ class Served(unittest.TestCase):
                 for name in alone["bodies"]:
                     self.assertEqual(alone["bodies"][name][()].tobytes(), seen["bodies"][name][()].tobytes())
 
+    def test_idle_connections_keep_nobody_out(self):
+        with WatchedRun(self.folder, "idle") as run:
+            idle = [socket.create_connection(("127.0.0.1", run.port)) for _ in range(100)]
+            self.assertEqual(run.ask()[0], 200)
+            self.assertEqual(run.ask("/new?since=0&page=x")[0], 200)
+            for one in idle:
+                one.close()
+
+    def test_the_folder_of_a_killed_run_is_free_at_once(self):
+        with WatchedRun(self.folder, "killed") as run:
+            run.ask()  # the server waits for this page
+            run.process.kill()
+            run.process.wait()
+            write_scene(self.folder, "killed", {**SCENE, "stages": [dict(SHORT[0], until={"type": "steps", "value": 10})]})
+            ended = subprocess.run([GRIT, "run", "killed.json", "--out", "killed", "--overwrite", "--quiet"], cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+
     def test_a_run_continues_without_its_server(self):
         # Long enough for several progress reports to that process.
         stages = [dict(SHORT[0], until={"type": "time", "value": "3 s"}, limit="10 s")]

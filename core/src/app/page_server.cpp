@@ -77,7 +77,14 @@ class PageServer {
     for (;;) {
       error_code error;
       tcp::socket socket = co_await acceptor_.async_accept(into(error));
-      if (!error && sessions_ < max_sessions) asio::co_spawn(io_, session(std::move(socket)), asio::detached);
+      if (error) continue;
+      bool has_room = sessions_ < max_sessions;
+      if (!has_room && !idle_.empty()) {  // a connection that asks for nothing makes room
+        idle_.front()->cancel();
+        idle_.erase(idle_.begin());
+        has_room = true;
+      }
+      if (has_room) asio::co_spawn(io_, session(std::move(socket)), asio::detached);
     }
   }
 
@@ -128,7 +135,9 @@ class PageServer {
       parser.header_limit(max_header_bytes);
       stream.expires_after(reader_gone_after);
       error_code error;
+      idle_.push_back(&stream);
       co_await http::async_read_header(stream, buffer, parser, into(error));
+      std::erase(idle_, &stream);
       if (error) break;
       const auto& request = parser.get();
       stream.expires_never();
@@ -213,6 +222,7 @@ class PageServer {
   std::string progress_;
   bool ended_ = false;
   std::size_t sessions_ = 0;
+  std::vector<beast::tcp_stream*> idle_;  ///< of sessions that wait for a request, the longest first
 };
 
 }  // namespace

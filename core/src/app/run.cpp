@@ -164,7 +164,9 @@ void print_speed(const RunSummary& summary) {
 }
 
 ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::string>& command_line,
-                   const std::optional<Listener>& listener, const std::atomic<bool>& interrupted) {
+                   const std::optional<Listener>& listener) {
+  const std::atomic<bool>& interrupted = end_on_interrupts();
+  if (interrupted.load()) return ExitStatus::interrupted;  // between two runs
   const std::filesystem::path& folder = job.folder;
   const Scene& scene = job.opened->scene;
   const SceneDescription& description = *scene.description;
@@ -195,9 +197,10 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   if (!prepared.note.empty()) say(prepared.note);
   ResultsOptions written = results_of(job, std::move(facts), prepared.bodies);
   written.from_previous = last && !last->note.empty();
+  catch_interrupts();  // placing bodies takes long, and leaves nothing that would have to be saved
   ResultsFolder results(std::move(written));
   std::optional<Watch> watch;  // before the simulation, which makes threads
-  if (listener) watch.emplace(*listener, folder);
+  if (listener) watch.emplace(*listener, folder, results.lock());
   ProgressBar bar;
   CurveSummary curves(results, scene, [&](const std::string& line) {
     bar.end();
@@ -264,15 +267,13 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   open_all(jobs, options);
   const auto listener = listener_of(options);
   if (listener) std::cerr << "watch: http://127.0.0.1:" << listener->port() << "/ during the run" << std::endl;
-  const auto& interrupted = catch_interrupts();
   std::vector<std::string> command_line{program_invocation_name, "run"};
   command_line.insert(command_line.end(), words.begin(), words.end());
   ExitStatus status = ExitStatus::done;
   for (const RunJob& job : jobs) {
     const ExitStatus one = report([&] {
       try {
-        return at_its_place(job.opened->scene.document,
-                            [&] { return run_one(job, options, command_line, listener, interrupted); });
+        return at_its_place(job.opened->scene.document, [&] { return run_one(job, options, command_line, listener); });
       } catch (const NumericsError& error) {
         throw NumericsError(job.file + ": " + error.what());
       }

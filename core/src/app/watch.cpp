@@ -17,8 +17,8 @@ namespace grit {
 namespace {
 
 [[noreturn]] void serve(int listening_socket, int control, const std::filesystem::path& folder) {
-  // Ctrl-C reaches all processes of a terminal, but this one must end after the run.
-  std::signal(SIGINT, SIG_IGN);
+  // Ctrl-C and a hangup reach all processes of a terminal, but this one must end after the run.
+  for (const int signal : {SIGINT, SIGHUP}) std::signal(signal, SIG_IGN);
   std::signal(SIGTERM, SIG_DFL);
   try {
     static_cast<void>(::nice(5));
@@ -34,7 +34,7 @@ namespace {
 
 }  // namespace
 
-Watch::Watch(const Listener& listener, const std::filesystem::path& folder) {
+Watch::Watch(const Listener& listener, const std::filesystem::path& folder, const FolderLock& lock) {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     throw FileError(std::string("cannot watch the run: ") + std::strerror(errno));
@@ -42,6 +42,7 @@ Watch::Watch(const Listener& listener, const std::filesystem::path& folder) {
   process_ = ::fork();
   if (process_ == 0) {
     ::close(ends[0]);
+    lock.leave();
     serve(listener.socket(), ends[1], folder);
   }
   const int error = errno;

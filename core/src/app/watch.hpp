@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/page_server.hpp"
+#include "output/folder_lock.hpp"
 
 namespace grit {
 
@@ -14,8 +15,9 @@ namespace grit {
 /// (nice). It can neither stop nor change the run, so that results do not depend on readers.
 class Watch {
  public:
-  /// To be called before any thread is started. Throws FileError if no process can be created.
-  Watch(const Listener& listener, const std::filesystem::path& folder);
+  /// To be called before any thread is started. The server does not hold the lock of the run: if the run is killed,
+  /// another one may begin at once. Throws FileError if no process can be created.
+  Watch(const Listener& listener, const std::filesystem::path& folder, const FolderLock& lock);
   /// Readers get the last state first, which may take some seconds.
   ~Watch();
   Watch(const Watch&) = delete;

@@ -1,7 +1,11 @@
 #include "contact/team.hpp"
 
 #include <algorithm>
+#include <string>
+#include <system_error>
 #include <utility>
+
+#include "grit/error.hpp"
 
 namespace grit {
 namespace {
@@ -39,10 +43,24 @@ void wait_while(const std::atomic<T>& value, T was) {
 }  // namespace
 
 Team::Team(unsigned threads) : stretch_(std::make_unique<Stretch[]>(threads)) {
-  for (unsigned i = 1; i < threads; ++i) workers_.emplace_back([this, i] { work_loop(i); });
+  workers_.reserve(threads - 1);
+  try {
+    for (unsigned i = 1; i < threads; ++i) workers_.emplace_back([this, i] { work_loop(i); });
+  } catch (const std::system_error& error) {
+    const std::size_t started = workers_.size() + 1;
+    stop();
+    throw FileError("cannot start " + std::to_string(threads) + " threads, only " + std::to_string(started) + ": " +
+                    error.code().message() +
+                    "; use fewer (--threads), or allow this user more processes or memory (ulimit)");
+  } catch (...) {
+    stop();
+    throw;
+  }
 }
 
-Team::~Team() {
+Team::~Team() { stop(); }
+
+void Team::stop() {
   stop_.store(true);
   generation_.fetch_add(1);
   generation_.notify_all();

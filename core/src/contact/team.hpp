@@ -16,7 +16,7 @@ namespace grit {
 /// neighbouring chunks share the cache of a core; a thread that is done takes chunks of others.
 class Team {
  public:
-  /// Total number of threads, including the caller; at least 1.
+  /// Total number of threads, including the caller; at least 1. Throws FileError if the system does not start them.
   explicit Team(unsigned threads);
   ~Team();
   Team(const Team&) = delete;
@@ -47,6 +47,8 @@ class Team {
 
   void run(std::size_t chunks, Call call, void* context);
   void work_loop(unsigned thread);
+  /// Ends the threads that were started.
+  void stop();
   /// Takes chunks of the present job until none is left, first those of the thread's own range.
   void take_chunks(std::uint32_t generation, unsigned thread);
 

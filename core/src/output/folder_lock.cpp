@@ -16,4 +16,8 @@ FolderLock::~FolderLock() {
   if (folder_ >= 0) ::close(folder_);
 }
 
+void FolderLock::leave() const {
+  if (folder_ >= 0) ::close(folder_);
+}
+
 }  // namespace grit

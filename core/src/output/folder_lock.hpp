@@ -6,7 +6,8 @@
 namespace grit {
 
 /// A lock on an existing folder; nothing is written. Child processes inherit it, so that it lasts as long as any of
-/// them; the system releases it when they end or are killed. On a file system without locks it is always granted.
+/// them that does not leave() it; the system releases it when they end or are killed. On a file system without locks it
+/// is always granted.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);
@@ -16,6 +17,8 @@ class FolderLock {
 
   /// Whether the lock was acquired.
   bool held() const { return held_; }
+  /// In a child process: gives up its part of the lock.
+  void leave() const;
 
  private:
   int folder_;

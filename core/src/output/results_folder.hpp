@@ -70,6 +70,8 @@ class ResultsFolder final : public Recorder {
   /// its first step leaves nothing behind.
   ~ResultsFolder() override;
 
+  const FolderLock& lock() const { return lock_; }
+
   /// Throws Error for a channel of the picture that no probe has, or that is not a single value.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
