@@ -7,6 +7,8 @@
     run.frames[-1].bodies["position"]                 # n × 3, m
 
 Units are SI; names are those of docs/results.md. No file is kept open, so that a running simulation can be read repeatedly.
+Damaged files, and files that grit did not write, raise ResultsError: the HDF5 library may crash at them, so that they are
+checked first.
 """
 
 import difflib
@@ -15,6 +17,7 @@ import json
 import pathlib
 import struct
 import time
+import zlib
 from collections.abc import Mapping, Sequence
 
 import h5py
@@ -68,23 +71,93 @@ def _is_being_written(path):
             return False
 
 
-def _read(path, act):
-    """The result of `act` on the open file, repeated until the file was not written meanwhile."""
+# The last line of a complete series.h5: its length and CRC-32, see storage/seal.hpp.
+_SEAL = b"\ngrit seal "
+_SEAL_LENGTH = len(_SEAL) + 26
+_sealed = {}  # stamps of files whose seals were right
+
+
+def _check_seal(path):
+    """Raises ResultsError if the file was complete and has been changed since."""
+    stamp = _stamp(path)
+    if _sealed.get(path) == stamp or stamp[1] < _SEAL_LENGTH:
+        return
+    with path.open("rb") as file:
+        file.seek(-_SEAL_LENGTH, 2)
+        end = file.read()
+        if not end.startswith(_SEAL):
+            return
+        file.seek(0)
+        left, checksum = stamp[1] - _SEAL_LENGTH, 0
+        while left and (piece := file.read(min(left, 1 << 20))):
+            checksum, left = zlib.crc32(piece, checksum), left - len(piece)
+    if end != _SEAL + b"%016x %08x\n" % (stamp[1] - _SEAL_LENGTH, checksum):
+        raise ResultsError(f"{path}: is damaged, or was changed by another program: its checksum differs")
+    _sealed[path] = stamp
+
+
+def _check_frame(path):
+    """Raises ResultsError for a frame whose metadata have no checksums."""
+    with path.open("rb") as file:
+        first = file.read(9)
+    if first.startswith(b"\x89HDF\r\n\x1a\n") and first[8:] < b"\x03":
+        raise ResultsError(f"{path}: is of an earlier version of grit, without checksums; run the description again")
+
+
+def _refuse(thing, what):
+    raise ResultsError(f"{thing.file.filename}{thing.name}: {what}; the file is damaged or not of grit")
+
+
+def _attribute(thing, name):
+    """An attribute, of a number or a text. Texts of variable length are refused: the library crashes at damaged ones."""
+    if name not in thing.attrs:
+        _refuse(thing, f"lacks the attribute {name!r}")
+    found = thing.attrs.get_id(name)
+    if found.dtype.kind not in "iufS" or found.shape != ():
+        _refuse(thing, f"its attribute {name!r} is neither a number nor a text of fixed length")
+    value = thing.attrs[name]
+    return value.decode() if isinstance(value, bytes) else value
+
+
+def _member(group, path):
+    """A group or dataset, but no link to another file."""
+    for name in path.split("/"):
+        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            _refuse(group, f"{name!r} is a link")
+        group = group[name]
+    return group
+
+
+def _numbers(dataset):
+    """All numbers of a dataset, if the file is long enough for them."""
+    properties = dataset.id.get_create_plist()
+    filters = [properties.get_filter(i)[0] for i in range(properties.get_nfilters())]
+    if dataset.dtype.kind not in "iuf" or dataset.external or dataset.is_virtual or set(filters) - {h5py.h5z.FILTER_FLETCHER32}:
+        _refuse(dataset, "does not hold plain numbers")
+    length = dataset.file.id.get_filesize()
+    if dataset.nbytes > length:
+        _refuse(dataset, f"has more numbers than a file of {length} bytes can hold")
+    return dataset[()]
+
+
+def _read(path, act, check=_check_seal):
+    """The result of `act` on the open file, repeated until the file was not written meanwhile. `check` comes before the library."""
     until = time.monotonic() + _PATIENCE
     while True:
         before, failure = _stamp(path), None
         rested = not 0 <= time.time_ns() - before[0] < _REST * 1e9 and not _is_being_written(path)
         try:
+            check(path)
             with h5py.File(path, "r") as file:
                 found = act(file)
-        except (OSError, RuntimeError, KeyError) as error:
+        except (OSError, RuntimeError, TypeError, ValueError, KeyError, ResultsError) as error:
             failure = error
         if rested and not _is_being_written(path) and _stamp(path) == before:
             break
         if time.monotonic() > until:
             raise ResultsError(f"{path}: has been written to for {_PATIENCE} s; try again, or check whether its run is suspended")
         time.sleep(_REST)
-    if isinstance(failure, KeyError):
+    if isinstance(failure, (KeyError, ResultsError)):
         raise failure
     if failure:
         raise ResultsError(f"{path}: cannot be read: {failure}; the file is damaged") from failure
@@ -98,17 +171,17 @@ class Table(Mapping):
         self._path, self._group, self._what = path, group, what
 
     def _use(self, act):
-        return _read(self._path, lambda file: act(file[self._group] if self._group in file else {}))
+        return _read(self._path, lambda file: act(_member(file, self._group) if self._group in file else {}), _check_frame)
 
     def _of(self, name, act):
         def get(group):
-            if name not in group or not isinstance(group[name], h5py.Dataset):
+            if name not in group or not isinstance(_member(group, name), h5py.Dataset):
                 raise UnknownName(self._what, name, sorted(group))
             return act(group[name])
         return self._use(get)
 
     def __getitem__(self, name):
-        return self._of(name, lambda dataset: dataset[()])
+        return self._of(name, _numbers)
 
     def __iter__(self):
         return iter(self._use(lambda group: sorted(group)))
@@ -121,15 +194,15 @@ class Table(Mapping):
 
     def units(self, name):
         """Unit in UDUNITS notation, "1" if dimensionless."""
-        return self._of(name, lambda dataset: dataset.attrs["units"])
+        return self._of(name, lambda dataset: _attribute(dataset, "units"))
 
     def about(self, name):
         """Description of the dataset."""
-        return self._of(name, lambda dataset: dataset.attrs["long_name"])
+        return self._of(name, lambda dataset: _attribute(dataset, "long_name"))
 
     def all(self):
         """All datasets, read at one instant: {name: array}. They have equal lengths even while the run continues."""
-        return self._use(lambda group: {name: group[name][()] for name in sorted(group)})
+        return self._use(lambda group: {name: _numbers(_member(group, name)) for name in sorted(group)})
 
     def records(self):
         """All datasets as one structured array, one record per row."""
@@ -142,7 +215,7 @@ class Table(Mapping):
 
 
 def _channels(file):
-    return [f"{probe}/{channel}" for probe in file for channel in file[probe]]
+    return [f"{probe}/{channel}" for probe in file for channel in _member(file, probe)]
 
 
 class Series(Mapping):
@@ -152,14 +225,14 @@ class Series(Mapping):
         self._path = path
 
     def __getitem__(self, name):
-        return self._of(name, lambda dataset: dataset[()])
+        return self._of(name, _numbers)
 
     def _of(self, name, act):
         def get(file):
             probe, _, channel = str(name).partition("/")
-            if probe not in file or channel not in file[probe]:
+            if probe not in file or channel not in _member(file, probe):
                 raise UnknownName("channel", name, _channels(file))
-            return act(file[probe][channel])
+            return act(_member(file[probe], channel))
         return _read(self._path, get)
 
     def __iter__(self):
@@ -172,17 +245,17 @@ class Series(Mapping):
         return f"<series of {self._path}: {', '.join(self)}>"
 
     def units(self, name):
-        return self._of(name, lambda dataset: dataset.attrs["units"])
+        return self._of(name, lambda dataset: _attribute(dataset, "units"))
 
     def about(self, name):
-        return self._of(name, lambda dataset: dataset.attrs["long_name"])
+        return self._of(name, lambda dataset: _attribute(dataset, "long_name"))
 
     def probe(self, name):
         """All channels of a probe, read at one instant: {channel: array}. They have equal lengths even while the run continues."""
         def get(file):
             if name not in file:
                 raise UnknownName("probe", name, list(file))
-            return {channel: dataset[()] for channel, dataset in file[name].items()}
+            return {channel: _numbers(_member(file[name], channel)) for channel in _member(file, name)}
         return _read(self._path, get)
 
 
@@ -190,10 +263,10 @@ class Wall:
     """A wall in one frame: `triangles` t × 3 × 3 corners [m], `index`, `pressure` [Pa], `displacement` [m], `force` [N]."""
 
     def __init__(self, dataset):
-        self.triangles = dataset[()]
-        self.index = int(dataset.attrs["index"])
-        self.pressure = float(dataset.attrs["pressure"])
-        self.displacement, self.force = (numpy.array([dataset.attrs[f"{name}_{axis}"] for axis in "xyz"]) for name in ("displacement", "force"))
+        self.triangles = _numbers(dataset)
+        self.index = int(_attribute(dataset, "index"))
+        self.pressure = float(_attribute(dataset, "pressure"))
+        self.displacement, self.force = (numpy.array([_attribute(dataset, f"{name}_{axis}") for axis in "xyz"]) for name in ("displacement", "force"))
 
 
 class Frame:
@@ -201,8 +274,12 @@ class Frame:
 
     def __init__(self, path):
         self.path = path
-        attributes, self.walls, probes = _read(path, lambda file: (dict(file.attrs), {name: Wall(wall) for name, wall in file["walls"].items()}, list(file["probes"])))
-        self.time, self.step, self.stage = float(attributes["time"]), int(attributes["step"]), str(attributes["stage"])
+        def get(file):
+            walls = _member(file, "walls")
+            return ([_attribute(file, name) for name in ("time", "step", "stage")],
+                    {name: Wall(_member(walls, name)) for name in walls}, list(_member(file, "probes")))
+        (self.time, self.step, self.stage), self.walls, probes = _read(path, get, _check_frame)
+        self.time, self.step, self.stage = float(self.time), int(self.step), str(self.stage)
         self.probes = {name: Table(path, f"probes/{name}", "field") for name in probes}
         self.bodies, self.contacts, self.clumps = (Table(path, group, "array") for group in ("bodies", "contacts", "clumps"))
 

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <boost/property_tree/xml_parser.hpp>
+#include <fstream>
 #include <sstream>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "folder.hpp"
 #include "grit/error.hpp"
 #include "output/frame_size.hpp"
+#include "output/read_frames.hpp"
 #include "storage/frame_state.hpp"
 #include "storage/hdf5.hpp"
 #include "support/scene.hpp"
@@ -133,7 +135,10 @@ TEST(Frames, HoldTheStateOfWallsAndTheCell) {
   EXPECT_EQ(wall.spin, Vec3(4, 5, 6));
   EXPECT_EQ(time_of_frame(folder / "frames/000000.h5"), 0.25);
 
-  hdf5::File(folder / "old.h5", hdf5::Mode::replace).set_attribute("time", 0.5);
+  hdf5::File(folder / "older.h5", hdf5::Mode::replace).set_attribute("time", 0.5);
+  EXPECT_THAT(error_of<FileError>([&] { read_frame_state(folder / "older.h5"); }),
+              HasSubstr("older.h5: is of an earlier version of grit, without checksums; run the description again"));
+  hdf5::File(folder / "old.h5", hdf5::Mode::write_whole).set_attribute("time", 0.5);
   EXPECT_THAT(error_of<FileError>([&] { read_frame_state(folder / "old.h5"); }),
               HasSubstr("old.h5: is of an earlier version, whose frames hold neither poses of walls nor the cell"));
 }
@@ -339,6 +344,54 @@ TEST(Frames, ContinueFromACount) {
   EXPECT_FALSE(std::filesystem::exists(folder / "frames/000004.h5"));
   frames.write(world, {});
   EXPECT_TRUE(std::filesystem::exists(folder / "frames/000003.h5"));
+}
+
+/// What a reader shows of a frame.
+std::string shown(const std::filesystem::path& path) {
+  const Frame frame = read_frame(path);
+  std::ostringstream text;
+  const auto put = [&](const auto& numbers) {
+    for (const auto& one : numbers) text << one << ' ';
+  };
+  text << std::hexfloat << frame.time << ' ' << frame.step << ' ' << frame.stage << ' ';
+  put(frame.id), put(frame.position), put(frame.radius), put(frame.velocity), put(frame.rotation);
+  put(frame.body_a), put(frame.normal_force), put(frame.branch);
+  for (const auto& wall : frame.walls) text << wall.name << ' ', put(wall.corners), put(wall.displacement);
+  for (const auto& map : read_maps(path))
+    for (const Field& field : map.fields) text << field.name << ' ' << field.unit << ' ', put(field.values);
+  return text.str();
+}
+
+TEST(Frames, WithAnyFlippedByteAreTheSameOrRefused) {
+  const Folder folder;
+  auto world = three_grains();
+  world.rotation = {Vec3(7, 0, 0), Vec3(2, 0, 0), Vec3(5, 0, 0)};
+  Field centre{"centre", "m", "", 3, {1, 2, 3, 4, 5, 6}}, size = centre, porosity{"porosity", "1", "", 1, {0.3, 0.4}};
+  size.name = "size";
+  const std::vector<FieldGroup> maps{{"cells", {centre, size, porosity}}};
+  Frames(folder.path(), lid).write(world, maps);
+  const auto path = folder / "frames/000000.h5";
+  const std::string whole = shown(path);
+  const auto length = std::filesystem::file_size(path);
+  std::size_t refused = 0;
+  for (std::uint64_t at = 0; at < length; at += at < 1000 ? 1 : 23) {
+    const auto flip = [&] {
+      std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+      file.seekg(static_cast<std::streamoff>(at));
+      const char byte = static_cast<char>(file.get() ^ 1 << at % 8);
+      file.seekp(static_cast<std::streamoff>(at));
+      file.put(byte);
+    };
+    flip();
+    try {
+      EXPECT_EQ(shown(path), whole) << at;
+    } catch (const FileError&) {
+      ++refused;
+    }
+    flip();
+  }
+  EXPECT_GT(refused, 500u);
+  EXPECT_EQ(shown(path), whole);
 }
 
 }  // namespace

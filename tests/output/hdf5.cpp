@@ -4,6 +4,8 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <fstream>
+
 #include "folder.hpp"
 #include "grit/error.hpp"
 
@@ -79,6 +81,46 @@ TEST(Hdf5, ReportsFaultsOfAFile) {
               HasSubstr("cannot write 3 numbers into a shape of 4"));
   auto rows = file.create_growing<double>("rows", {2}, 3);
   EXPECT_THAT(error_of<FileError>([&] { rows.append(std::span<const double>(three)); }), HasSubstr("a row has 2"));
+}
+
+TEST(Hdf5, RefusesWhatItDoesNotWrite) {
+  const Folder folder;
+  hdf5::File file(folder / "a.h5", hdf5::Mode::write_whole);
+  const double three[] = {1, 2, 3};
+  auto list = file.write("list", {3}, std::span<const double>(three));
+  list.set_attribute("text", "m");
+  list.set_attribute("number", 0.1);
+  EXPECT_THAT(error_of<FileError>([&] { list.text("number"); }),
+              HasSubstr("a.h5/list: attribute 'number' is not a text"));
+  EXPECT_THAT(error_of<FileError>([&] { list.number<double>("text"); }),
+              HasSubstr("a.h5/list: attribute 'text' is not a number"));
+  EXPECT_THAT(error_of<FileError>([&] { list.read<double>(2, 2); }), HasSubstr("has 3 rows, but rows up to 4"));
+  list.set_attribute("text", "\xff");
+  EXPECT_THAT(error_of<FileError>([&] { list.text("text"); }), HasSubstr("attribute 'text' is not UTF-8"));
+  auto rows = file.create_growing<double>("rows", {2}, 3);
+  rows.truncate(std::size_t{1} << 50);  // without any chunk
+  EXPECT_THAT(error_of<FileError>([&] { rows.read<double>(); }),
+              HasSubstr("a.h5/rows: has more numbers than a file of "));
+  std::filesystem::create_directory(folder / "folder.h5");
+  EXPECT_THAT(error_of<FileError>([&] { hdf5::File(folder / "folder.h5", hdf5::Mode::read); }),
+              HasSubstr("folder.h5: is not a file"));
+}
+
+TEST(Hdf5, FindsDamagedNumbers) {
+  const Folder folder;
+  const auto path = folder / "a.h5";
+  {
+    hdf5::File file(path, hdf5::Mode::write_whole);
+    const std::vector<double> many(5000, 1.5);
+    file.write("many", {1000, 5}, std::span(many));
+    file.close();
+  }
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(path) / 2));
+  file.put('!');
+  file.close();
+  EXPECT_THAT(error_of<FileError>([&] { hdf5::File(path, hdf5::Mode::read_whole).dataset("many").read<double>(); }),
+              HasSubstr("a.h5/many: cannot read: "));
 }
 
 // A limit on file size replaces a full disk: write() fails in the same way.

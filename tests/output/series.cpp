@@ -9,6 +9,8 @@
 
 #include "folder.hpp"
 #include "grit/error.hpp"
+#include "output/read_results.hpp"
+#include "storage/seal.hpp"
 
 namespace grit::series_tests {
 namespace {
@@ -116,6 +118,42 @@ TEST(Series, ReportsThatItWasRemovedOrReplaced) {
   std::filesystem::rename(folder / "another.h5", folder / "replaced.h5");
   EXPECT_THAT(error_of<FileError>([&] { replaced.close(); }), HasSubstr("replaced.h5: was removed or replaced"));
   EXPECT_EQ(text_of(folder / "replaced.h5"), "another");
+}
+
+TEST(Series, ThatIsCompleteIsRefusedWithAnyFlippedByte) {
+  const Folder folder;
+  const auto path = folder / "series.h5";
+  {
+    Series series(path, probes);
+    for (std::uint64_t step = 0; step < 5; ++step) append(series, step);
+    series.close();
+  }
+  const auto length = std::filesystem::file_size(path);
+  const auto flip = [&](std::uint64_t at) {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekg(static_cast<std::streamoff>(at));
+    const char byte = static_cast<char>(file.get() ^ 1 << at % 8);
+    file.seekp(static_cast<std::streamoff>(at));
+    file.put(byte);
+    file.close();
+    std::filesystem::last_write_time(path, {});  // it has rested
+  };
+  for (std::uint64_t at = 0; at + 60 < length; at += at < 500 ? 1 : 997) {
+    flip(at);
+    EXPECT_THAT(error_of<FileError>([&] { SeriesFile(folder.path()); }), HasSubstr("series.h5: is damaged")) << at;
+    flip(at);
+  }
+  EXPECT_EQ(SeriesFile(folder.path()).channel("test/time").samples, 5u);
+  // A run that goes on removes the seal before it writes, and writes another.
+  {
+    const std::vector<std::uint64_t> kept{5, 3};
+    Series series(path, probes, kept);
+    EXPECT_FALSE(is_sealed(path));
+    append(series, 5);
+    series.close();
+  }
+  EXPECT_TRUE(is_sealed(path));
+  EXPECT_EQ(read_channel(folder.path(), "test/time").samples, 6u);
 }
 
 // A child process writes and reports the number of samples after each flush; it is killed in between.

@@ -83,8 +83,8 @@ class Results(unittest.TestCase):
                 self.assertIs(type(values), numpy.ndarray)
                 self.assertEqual(values.shape, file[name].shape)
                 self.assertEqual(values.tobytes(), file[name][()].tobytes())
-                self.assertEqual(self.run_.series.units(name), file[name].attrs["units"])
-                self.assertEqual(self.run_.series.about(name), file[name].attrs["long_name"])
+                self.assertEqual(self.run_.series.units(name), file[name].attrs["units"].decode())
+                self.assertEqual(self.run_.series.about(name), file[name].attrs["long_name"].decode())
         self.assertEqual(self.run_.series.units("packing/time"), "s")
         self.assertEqual(self.run_.series["packing/stress"].shape[1:], (3, 3))
 
@@ -102,12 +102,12 @@ class Results(unittest.TestCase):
         self.assertGreater(len(files), 3)
         for frame, path in zip(self.run_.frames, files):
             with h5py.File(path) as file:
-                self.assertEqual((frame.time, frame.step, frame.stage), (file.attrs["time"], file.attrs["step"], file.attrs["stage"]))
+                self.assertEqual((frame.time, frame.step, frame.stage), (file.attrs["time"], file.attrs["step"], file.attrs["stage"].decode()))
                 for table, group in ((frame.bodies, file["bodies"]), (frame.contacts, file["contacts"])):
                     self.assertEqual(list(table), sorted(group))
                     for name in table:
                         self.assertEqual(table[name].tobytes(), group[name][()].tobytes())
-                        self.assertEqual(table.units(name), group[name].attrs["units"])
+                        self.assertEqual(table.units(name), group[name].attrs["units"].decode())
                 wall, written = frame.walls["floor"], file["walls/floor"]
                 self.assertEqual(wall.triangles.tobytes(), written[()].tobytes())
                 self.assertEqual(list(wall.force), [written.attrs[f"force_{axis}"] for axis in "xyz"])
@@ -204,7 +204,7 @@ class Results(unittest.TestCase):
             for place, (name, axis) in enumerate((name, axis) for name in ("displacement", "force") for axis in "xyz"):
                 file["walls/floor"].attrs[f"{name}_{axis}"] = place
             field = file.create_dataset("probes/cells/centre", data=numpy.arange(6.0).reshape(2, 3))
-            field.attrs["units"] = "m"
+            field.attrs["units"] = numpy.bytes_("m")
         wall = grit.open(target).frames[0].walls["floor"]
         self.assertEqual((wall.displacement.tolist(), wall.force.tolist()), ([0, 1, 2], [3, 4, 5]))
         cells = grit.open(target).frames[0].probes["cells"]
@@ -231,6 +231,69 @@ class Results(unittest.TestCase):
         (target / "run.json").write_text('{"status": ')
         with self.assertRaisesRegex(grit.ResultsError, "run.json: not JSON"):
             grit.open(target)
+
+    def test_flipped_bytes_are_found(self):
+        target = self.copy()
+        run = grit.open(target)
+        frame, series = target / "frames/000001.h5", target / "series.h5"
+        before = {name: values.tobytes() for name, values in run.frames[1].bodies.all().items()}
+
+        def flipped(path, act):
+            whole = path.read_bytes()
+            for place in range(0, len(whole) - 60, max(1, len(whole) // 300)):
+                path.write_bytes(whole[:place] + bytes([whole[place] ^ 1 << place % 8]) + whole[place + 1:])
+                os.utime(path, (0, place))  # it has rested
+                act(place)
+            path.write_bytes(whole)
+
+        def frame_is_the_same_or_refused(place):
+            try:
+                now = run.frames[1]
+                self.assertEqual(({name: values.tobytes() for name, values in now.bodies.all().items()}, now.stage), (before, "fall"), place)
+            except (grit.ResultsError, KeyError):
+                pass
+
+        def series_are_refused(place):
+            with self.assertRaisesRegex(grit.ResultsError, "series.h5: is damaged, or was changed by another program", msg=place):
+                run.series["packing/time"]
+
+        flipped(frame, frame_is_the_same_or_refused)
+        flipped(series, series_are_refused)
+
+    def test_odd_files_are_refused_in_words(self):
+        target = self.copy()
+        series, run = target / "series.h5", grit.open(target)
+
+        def refused(act, words):
+            with h5py.File(series, "w") as file:
+                group = file.create_group("packing")
+                group["time"] = numpy.arange(3.0)
+                group["time"].attrs["units"] = numpy.bytes_("s")
+                act(file)
+            os.utime(series, (0, 0))
+            with self.assertRaisesRegex(grit.ResultsError, words):
+                run.series["packing/time"], run.series.units("packing/time")
+            report = subprocess.run([GRIT, "report", target, "--out", target / "odd.html"], capture_output=True, text=True)
+            self.assertGreaterEqual(report.returncode, 0, report.stderr)
+            self.assertIn("series.h5", report.stderr)
+
+        def replace(file, **dataset):
+            del file["packing/time"]
+            file["packing"].create_dataset("time", **dataset)
+
+        def link(file):
+            file["packing/more"] = h5py.ExternalLink(str(target / "frames/000000.h5"), "/bodies/radius")
+            del file["packing/time"]
+            file["packing/time"] = h5py.SoftLink("/packing/more")
+
+        refused(link, "is a link")
+        refused(lambda file: file["packing/time"].attrs.create("units", "s"), "neither a number nor a text of fixed length")
+        refused(lambda file: file["packing/time"].attrs.create("units", [1, 2, 3]), "neither a number nor a text of fixed length")
+        refused(lambda file: replace(file, shape=(1 << 45,), chunks=(1024,), dtype="f8"), "more numbers than a file of")
+        refused(lambda file: replace(file, shape=(1 << 20,), chunks=(1 << 20,), compression="gzip", dtype="f8"), "does not hold plain numbers")
+        refused(lambda file: replace(file, shape=(3,), dtype="f8", external=[(str(target / "run.json"), 0, 24)]), "does not hold plain numbers")
+        refused(lambda file: replace(file, data=numpy.array([(1, 2)], dtype="i4,i4")), "does not hold plain numbers")
+        refused(lambda file: replace(file, data="text"), "does not hold plain numbers")
 
 
 if __name__ == "__main__":

@@ -30,8 +30,8 @@ def write_frames(folder, grains, frames):
         moved = numpy.zeros((grains, 3))
         moved[:, 0] = 0.006 * share / (1 + numpy.exp(-(low[:, 2] - 0.02) / 1e-3))
         moved += random.normal(0, 2e-5, (grains, 3))
-        with h5py.File(folder / f"frames/{number:06}.h5", "w") as file:
-            file.attrs["time"], file.attrs["step"], file.attrs["stage"] = 1e-3 * number, 1000 * number, "shear"
+        with h5py.File(folder / f"frames/{number:06}.h5", "w", libver="v110") as file:
+            file.attrs["time"], file.attrs["step"], file.attrs["stage"] = 1e-3 * number, 1000 * number, numpy.bytes_("shear")
             for name, values in {"id": numpy.arange(grains), "position": low + moved, "radius": radius, "velocity": random.normal(0, 0.01, (grains, 3)),
                                  "rotation": random.normal(0, 0.3 * share + 1e-9, (grains, 3)), "displacement": moved}.items():
                 file[f"bodies/{name}"] = values

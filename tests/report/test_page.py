@@ -655,7 +655,7 @@ class Page(unittest.TestCase):
         run(self.folder, "gate", walls={**SCENE["walls"], "gate": gate("11 mm")}, stages=stages, output={"frames": {"every_time": "5 ms"}})
         with h5py.File(self.folder / "gate/frames/000000.h5") as first, h5py.File(self.folder / "gate/frames/000004.h5") as last:
             self.assertEqual([frame["walls/gate"][0, 0, 2] for frame in (first, last)], [0.011, -0.02])
-            self.assertEqual(last.attrs["stage"], "open")
+            self.assertEqual(last.attrs["stage"], b"open")
         self.browser.open(self.folder / "gate/report.html")
         self.browser.wait(f"{GRAINS}?.painted")
         heights = self.browser.evaluate(f"""Promise.all([0, 4].map(async (frame) => (await {GRAINS}.frames.walls(frame)).find(({{name}}) => name === 'gate').corners[2]))""")

@@ -16,8 +16,9 @@ std::vector<BodyValues> values_of_bodies(const FieldGroup& table, std::span<cons
   const auto id = std::ranges::find_if(table.fields, [](const Field& f) { return f.name == "id" && f.width == 1; });
   if (id == table.fields.end()) return {};
   std::unordered_map<std::int64_t, std::size_t> row_of;
+  constexpr double largest = 1e18;  // beyond any id, and in the range of integers
   for (std::size_t row = 0; row < id->values.size(); ++row)
-    row_of.emplace(static_cast<std::int64_t>(id->values[row]), row);
+    if (std::abs(id->values[row]) < largest) row_of.emplace(static_cast<std::int64_t>(id->values[row]), row);
   std::vector<std::optional<std::size_t>> rows;
   for (const std::int64_t body : ids) {
     const auto found = row_of.find(body);

@@ -265,7 +265,7 @@ Frames::Instant Frames::instant_of(const hdf5::File& file) {
 
 std::optional<Frames::Instant> Frames::kept_instant(const std::filesystem::path& path) try {
   if (!std::filesystem::exists(path)) return std::nullopt;
-  return instant_of(hdf5::File(path, hdf5::Mode::read));
+  return instant_of(hdf5::File(path, hdf5::Mode::read_whole));
 } catch (const FileError& error) {
   throw FileError(std::string(error.what()) + "; to continue without this frame, remove it");
 }
@@ -289,7 +289,7 @@ void Frames::sync() {
 
 void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   const auto path = results_ / "frames" / frame_name(instants_.size());
-  hdf5::File file(temporary_path(path), hdf5::Mode::replace);
+  hdf5::File file(temporary_path(path), hdf5::Mode::write_whole);
   file.set_attribute("time", world.time());
   file.set_attribute("step", world.step());
   file.set_attribute("stage", world.stage());

@@ -76,7 +76,7 @@ bool is_run_json(const std::optional<Description>& json) {
 bool is_state(const fs::path& path) {
   if (!is_file(path)) return false;
   try {
-    const hdf5::File file(path, hdf5::Mode::read);
+    const hdf5::File file(path, hdf5::Mode::read_whole);
     return file.has_attribute("format") && file.has("facts") && file.has("state");
   } catch (const FileError&) {
     return false;

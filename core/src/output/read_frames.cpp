@@ -1,7 +1,9 @@
 #include "output/read_frames.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -22,8 +24,22 @@ std::vector<T> column(const hdf5::Group& group, const std::string& name, std::si
   return dataset.read<T>();
 }
 
+[[noreturn]] void refuse(const hdf5::Object& object, const std::string& what) {
+  throw FileError(object.where() + ": " + what + "; the file is damaged or not of grit");
+}
+
+/// Names in the order of their numbers.
+std::vector<std::string> names_of_groups(const hdf5::Dataset& group) try {
+  return Description::parse(group.text("names")).get<std::vector<std::string>>();
+} catch (const Description::exception&) {
+  refuse(group, "its attribute 'names' is not a list of names");
+}
+
 void read_bodies(const hdf5::Group& group, Frame& frame) {
-  frame.id = group.dataset("id").read<std::int64_t>();
+  const auto ids = group.dataset("id");
+  frame.id = ids.read<std::int64_t>();
+  if (std::ranges::adjacent_find(frame.id, std::ranges::greater()) != frame.id.end())
+    refuse(ids, "numbers of bodies do not ascend");
   const auto n = frame.id.size();
   frame.position = column<double>(group, "position", n, 3);
   frame.radius = column<double>(group, "radius", n);
@@ -33,7 +49,9 @@ void read_bodies(const hdf5::Group& group, Frame& frame) {
   if (group.has("clump")) frame.clump = column<std::int64_t>(group, "clump", n);
   if (group.has("group")) {
     frame.group = column<std::int32_t>(group, "group", n);
-    frame.group_names = Description::parse(group.dataset("group").text("names")).get<std::vector<std::string>>();
+    frame.group_names = names_of_groups(group.dataset("group"));
+    const auto known = [&](std::int32_t one) { return one >= 0 && std::cmp_less(one, frame.group_names.size()); };
+    if (!std::ranges::all_of(frame.group, known)) refuse(group.dataset("group"), "a body is in a group without a name");
   }
 }
 
@@ -53,6 +71,9 @@ void read_chains(const hdf5::Group& probes, Frame& frame) {
     if (chain.size() != force.size() || force.size() > frame.normal_force.size() ||
         !std::equal(force.begin(), force.end(), frame.normal_force.begin()))
       continue;
+    constexpr double most = std::numeric_limits<std::uint32_t>::max();
+    if (!std::ranges::all_of(chain, [](double one) { return one >= 0 && one <= most; }))
+      refuse(tables.dataset("chain"), "numbers of chains are not whole numbers");
     frame.chain.assign(frame.normal_force.size(), 0);
     std::ranges::transform(chain, frame.chain.begin(), [](double one) { return static_cast<std::uint32_t>(one); });
     return;
@@ -87,6 +108,8 @@ void read_values(const hdf5::Group& probes, Frame& frame) {
 void read_walls(const hdf5::Group& group, Frame& frame) {
   for (const auto& name : group.names()) {
     const auto wall = group.dataset(name);
+    const auto shape = wall.shape();
+    if (shape.size() != 3 || shape[1] != 3 || shape[2] != 3) refuse(wall, "is not a list of triangles");
     frame.walls.push_back({name,
                            wall.read<double>(),
                            {wall.number<double>("displacement_x"), wall.number<double>("displacement_y"),
@@ -122,7 +145,7 @@ std::vector<std::filesystem::path> frame_files(const std::filesystem::path& fold
 }
 
 Frame read_frame(const std::filesystem::path& path) {
-  const hdf5::File file(path, hdf5::Mode::read);
+  const hdf5::File file(path, hdf5::Mode::read_whole);
   Frame frame;
   frame.time = file.number<double>("time");
   frame.step = file.number<std::uint64_t>("step");
@@ -138,7 +161,7 @@ Frame read_frame(const std::filesystem::path& path) {
 }
 
 std::vector<FieldGroup> read_maps(const std::filesystem::path& path) {
-  const hdf5::File file(path, hdf5::Mode::read);
+  const hdf5::File file(path, hdf5::Mode::read_whole);
   std::vector<FieldGroup> maps;
   if (!file.has("probes")) return maps;
   const auto probes = file.group("probes");
@@ -160,11 +183,11 @@ std::vector<FieldGroup> read_maps(const std::filesystem::path& path) {
 }
 
 std::size_t bodies_in_frame(const std::filesystem::path& path) {
-  return hdf5::File(path, hdf5::Mode::read).group("bodies").dataset("id").rows();
+  return hdf5::File(path, hdf5::Mode::read_whole).group("bodies").dataset("id").rows();
 }
 
 std::string stage_of_frame(const std::filesystem::path& path) {
-  return hdf5::File(path, hdf5::Mode::read).text("stage");
+  return hdf5::File(path, hdf5::Mode::read_whole).text("stage");
 }
 
 }  // namespace grit

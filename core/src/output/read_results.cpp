@@ -9,6 +9,7 @@
 
 #include "grit/toolkit/did_you_mean.hpp"
 #include "output/writing_mark.hpp"
+#include "storage/seal.hpp"
 
 namespace grit {
 namespace {
@@ -48,6 +49,7 @@ hdf5::File settled(const std::filesystem::path& path, std::chrono::milliseconds 
     const Stamp before = stamp_of(path);
     const auto has_stayed = [&] { return !is_being_written(path) && stamp_of(path) == before; };
     if (has_rested(before) && !is_being_written(path)) try {
+        static_cast<void>(is_sealed(path));  // throws if the file was complete and is damaged
         hdf5::File copy(path, hdf5::Mode::copy);
         if (has_stayed()) return copy;
       } catch (const FileError&) {

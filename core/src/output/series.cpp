@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "grit/error.hpp"
+#include "storage/seal.hpp"
 
 namespace grit {
 namespace {
@@ -150,6 +151,7 @@ void Series::close() {
   const Marked marked(mark_);
   write();
   file_.close();
+  seal(path_);
 }
 
 }  // namespace grit

@@ -36,6 +36,7 @@ class Series {
   /// Appends a sample of the probe with this index; one span per channel.
   void append(std::size_t probe, double time, std::uint64_t step, std::span<const std::span<const double>> values);
   void flush();
+  /// Writes what remains, and seals the file: then any damaged byte is found when it is read.
   void close();
   /// Number of samples of each probe.
   std::vector<std::uint64_t> samples() const;

@@ -17,6 +17,12 @@ std::optional<double> number(const RunResults& run, const std::string& pointer) 
   return found.is_number() ? std::optional(found.get<double>()) : std::nullopt;
 }
 
+/// A count in digits; nothing for what is no count, in a file that grit did not write.
+std::string count_text(double value) {
+  constexpr double largest = 1e18;
+  return value >= 0 && value < largest ? grouped(static_cast<std::uint64_t>(value)) : "";
+}
+
 /// Whether run.json contains progress and run time: it is written at the end of each stage.
 bool has_ended_a_stage(const RunResults& run) {
   return status_of(run) != "running" || number(run, "/steps").value_or(0) > 0;
@@ -52,7 +58,7 @@ std::optional<double> largest(const RunResults& run, const std::string& channel)
 std::string three_digits(double value) {
   if (value < 1000) return fmt::format("{:.3g}", value);
   const double step = std::pow(10, std::floor(std::log10(value)) - 2);
-  return grouped(static_cast<std::uint64_t>(step * std::round(value / step)));
+  return count_text(step * std::round(value / step));
 }
 
 bool has_channel(const RunResults& run, const std::string& channel) {
@@ -106,15 +112,13 @@ std::vector<Fact> cost_facts(const RunResults& run) {
   std::vector<Fact> facts;
   if (const auto bodies = number(run, "/bodies")) {
     const auto contacts = number(run, "/contacts_per_body");
-    facts.push_back({"bodies", grouped(static_cast<std::uint64_t>(*bodies)),
-                     contacts ? fmt::format("{:.2f} contacts each", *contacts) : "", false,
-                     grouped(static_cast<std::uint64_t>(*bodies)) + " bodies"});
+    facts.push_back({"bodies", count_text(*bodies), contacts ? fmt::format("{:.2f} contacts each", *contacts) : "",
+                     false, count_text(*bodies) + " bodies"});
   }
   const bool has_progress = has_ended_a_stage(run);
   if (const auto time = number(run, "/time"); time && has_progress) {
     const auto steps = number(run, "/steps");
-    facts.push_back({"simulated", written_time(*time),
-                     steps ? grouped(static_cast<std::uint64_t>(*steps)) + " steps" : "", false,
+    facts.push_back({"simulated", written_time(*time), steps ? count_text(*steps) + " steps" : "", false,
                      written_time(*time) + " simulated"});
   }
   if (const auto wall = number(run, "/wall_s"); wall && has_progress) {

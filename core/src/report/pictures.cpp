@@ -50,7 +50,7 @@ std::optional<Frame> last_frame(RunResults& run) {
 ScaleEnds ends_of(const RunResults& run, std::initializer_list<std::string> names) {
   for (const std::string& name : names)
     for (const Description& scale : run.at("/description/output/color_scales")) {
-      if (!scale.is_object() || scale.value("of", "") != name) continue;
+      if (!scale.is_object() || !scale.contains("of") || scale["of"] != name) continue;
       const auto end = [&](const char* key) {
         const auto found = scale.find(key);
         return found != scale.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
@@ -60,7 +60,10 @@ ScaleEnds ends_of(const RunResults& run, std::initializer_list<std::string> name
   return {};
 }
 
-std::string view_wanted(const RunResults& run) { return text_or(run.at("/description/output/picture/view"), "xz"); }
+std::string view_wanted(const RunResults& run) {
+  const std::string view = text_or(run.at("/description/output/picture/view"), "xz");
+  return view == "xy" || view == "yz" ? view : "xz";
+}
 
 std::vector<std::vector<Vec3>> walls_of(const Frame& frame) {
   std::vector<std::vector<Vec3>> walls;
@@ -233,6 +236,7 @@ std::optional<std::string> layers_picture(RunResults& run) {
       return true;
     }
   });
+  if (instants.empty()) return std::nullopt;
   const auto [first, stage] = where_layers_begin(instants);
   if (first + 1 == run.frames.size()) return std::nullopt;
   const Frame start = read_frame(run.frames[first]);

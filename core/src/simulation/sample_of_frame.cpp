@@ -166,6 +166,8 @@ Prepared sample_of_frame(const LiveScene& live, const Registry& registry, StateR
   const BeginDescription& begin = *scene.begin;
   const ChosenFrame chosen = chosen_frame(begin);
   const FrameState frame = read_frame_state(chosen.path);
+  if (frame.groups.empty() && !frame.bodies.empty())
+    throw FileError(chosen.path.string() + ": names no group of its bodies; the file is damaged or not of grit");
   const Scene before = scene_of(begin, registry);
   LiveScene live_before(before);
   live_before.go_to(stage_of(frame, before), 0);

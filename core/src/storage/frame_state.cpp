@@ -2,7 +2,10 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <system_error>
 
@@ -28,6 +31,33 @@ class Vectors {
   std::vector<double> values_;
 };
 
+[[noreturn]] void refuse(const hdf5::Object& object, const std::string& what) {
+  throw FileError(object.where() + ": " + what + "; the file is damaged or not of grit");
+}
+
+bool is_number_of_body(std::int64_t id) { return id >= 0 && id < std::numeric_limits<std::uint32_t>::max(); }
+
+/// Places of bodies and clumps, which runs begin from: ids ascend, numbers are finite and sizes positive.
+template <class Placed>
+void check(const std::vector<Placed>& all, const hdf5::Group& group, Vec3 Placed::*place) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Placed& one = all[i];
+    if (i > 0 && all[i - 1].id >= one.id) refuse(group, "ids do not ascend");
+    if (!(one.*place).allFinite() || !one.velocity.allFinite() || !one.spin.allFinite() || !(one.radius > 0) ||
+        !std::isfinite(one.radius))
+      refuse(group, "number " + std::to_string(one.id) + " has a position, a velocity or a radius that is no number");
+  }
+}
+
+void check_references(const hdf5::Group& group, const FrameState& frame) {
+  for (const FrameBody& body : frame.bodies) {
+    if (body.group >= std::max<std::size_t>(frame.groups.size(), 1))
+      refuse(group, "a body is in a group without a name");
+    if (body.clump >= 0 && !std::ranges::binary_search(frame.clumps, body.clump, {}, &FrameClump::id))
+      refuse(group, "a body is of a clump that the frame does not hold");
+  }
+}
+
 void read_bodies(const hdf5::Group& group, FrameState& frame) {
   const auto id = group.dataset("id").read<std::int64_t>();
   const auto radius = group.dataset("radius").read<double>();
@@ -41,6 +71,7 @@ void read_bodies(const hdf5::Group& group, FrameState& frame) {
   } else if (group.has_attribute("group")) {
     frame.groups = {group.text("group")};
   }
+  if (!std::ranges::all_of(id, is_number_of_body)) refuse(group, "holds numbers that no body has");
   for (std::size_t i = 0; i < id.size(); ++i)
     frame.bodies.push_back({.id = static_cast<std::uint32_t>(id[i]),
                             .group = static_cast<std::size_t>(of.at(i)),
@@ -49,26 +80,31 @@ void read_bodies(const hdf5::Group& group, FrameState& frame) {
                             .velocity = velocity[i],
                             .spin = spin[i],
                             .radius = radius.at(i)});
+  check(frame.bodies, group, &FrameBody::position);
 }
 
 void read_clumps(const hdf5::Group& group, FrameState& frame) {
   const auto id = group.dataset("id").read<std::int64_t>();
   const auto radius = group.dataset("radius").read<double>(), turn = group.dataset("orientation").read<double>();
+  if (!std::ranges::all_of(id, is_number_of_body)) refuse(group, "holds numbers that no clump has");
   const Vectors centre(group, "centre"), velocity(group, "velocity"), spin(group, "spin");
   for (std::size_t i = 0; i < id.size(); ++i) {
-    const double* q = &turn.at(4 * i);
+    const Eigen::Quaterniond q(turn.at(4 * i), turn.at(4 * i + 1), turn.at(4 * i + 2), turn.at(4 * i + 3));
+    if (!(q.norm() > 0) || !std::isfinite(q.norm())) refuse(group, "an orientation is no rotation");
     frame.clumps.push_back({.id = id[i],
                             .centre = centre[i],
                             .velocity = velocity[i],
                             .spin = spin[i],
-                            .orientation = Eigen::Quaterniond(q[0], q[1], q[2], turn.at(4 * i + 3)).normalized(),
+                            .orientation = q.normalized(),
                             .radius = radius.at(i)});
   }
+  check(frame.clumps, group, &FrameClump::centre);
 }
 
 FrameWall read_wall(const std::string& name, const hdf5::Object& object) {
   const Vec3 xyz = vector_of(object, "orientation");
   const Eigen::Quaterniond turn(object.number<double>("orientation_w"), xyz.x(), xyz.y(), xyz.z());
+  if (!(turn.norm() > 0) || !std::isfinite(turn.norm())) refuse(object, "its orientation is no rotation");
   return {name,
           {vector_of(object, "reference"), vector_of(object, "displacement"), turn.normalized().toRotationMatrix()},
           vector_of(object, "velocity"),
@@ -104,7 +140,7 @@ void set_wall(hdf5::Object& object, const FrameWall& wall) {
 }
 
 FrameState read_frame_state(const std::filesystem::path& path) try {
-  const hdf5::File file(path, hdf5::Mode::read);
+  const hdf5::File file(path, hdf5::Mode::read_whole);
   if (!file.has_attribute("tilt_x"))
     throw FileError(path.string() +
                     ": is of an earlier version, whose frames hold neither poses of walls nor the cell; run the sample "
@@ -116,15 +152,18 @@ FrameState read_frame_state(const std::filesystem::path& path) try {
   frame.shear_rate = vector_of(file, "shear_rate"), frame.tilt = vector_of(file, "tilt");
   read_bodies(file.group("bodies"), frame);
   if (file.has("clumps")) read_clumps(file.group("clumps"), frame);
+  check_references(file.group("bodies"), frame);
   const auto walls = file.group("walls");
   for (const std::string& name : walls.names()) frame.walls.push_back(read_wall(name, walls.dataset(name)));
   return frame;
 } catch (const std::out_of_range&) {
   throw FileError(path.string() + ": has datasets of different lengths; the file is damaged");
+} catch (const Description::exception&) {
+  throw FileError(path.string() + ": names of groups are not a list of names; the file is damaged");
 }
 
 double time_of_frame(const std::filesystem::path& path) {
-  return hdf5::File(path, hdf5::Mode::read).number<double>("time");
+  return hdf5::File(path, hdf5::Mode::read_whole).number<double>("time");
 }
 
 }  // namespace grit

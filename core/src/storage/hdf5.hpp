@@ -62,7 +62,9 @@ inline std::size_t product(std::span<const std::size_t> shape) {
 }
 
 // T below is one of the types of Number; reading converts. Everything throws FileError with the file, the object and
-// the library's innermost message.
+// the library's innermost message. What is read may come from a stranger: objects that grit does not write, such as
+// links to other files, texts of variable length and shapes that the file is too short for, are refused before they are
+// used.
 
 /// An object with attributes.
 class Object {
@@ -73,6 +75,7 @@ class Object {
     set_number(name, number_of<T>(), &number);
   }
   bool has_attribute(const std::string& name) const;
+  /// UTF-8.
   std::string text(const std::string& name) const;
   /// Space-separated words of a text; none if there is no such attribute.
   std::vector<std::string> words(const std::string& name) const;
@@ -104,16 +107,14 @@ class Dataset : public Object {
   /// All numbers, or those of rows [first, first + count).
   template <class T>
   std::vector<T> read() const {
-    std::vector<T> values(product(shape()));
-    get(number_of<T>(), values.data());
+    std::vector<T> values(product(readable_shape()));
+    if (!values.empty()) get(number_of<T>(), values.data());
     return values;
   }
   template <class T>
   std::vector<T> read(std::size_t first, std::size_t count) const {
-    auto part = shape();
-    part.at(0) = count;
-    std::vector<T> values(product(part));
-    get(number_of<T>(), first, count, values.data());
+    std::vector<T> values(product(readable_rows(first, count)));
+    if (!values.empty()) get(number_of<T>(), first, count, values.data());
     return values;
   }
   /// Appends whole rows to a growing dataset.
@@ -121,7 +122,6 @@ class Dataset : public Object {
   void append(std::span<const T> values) {
     append(number_of<T>(), values.size(), values.data());
   }
-  /// Reads a dataset of write_checked().
   std::vector<std::byte> read_bytes() const;
   /// Removes the rows from `rows` on.
   void truncate(std::size_t rows);
@@ -129,6 +129,10 @@ class Dataset : public Object {
  private:
   friend class Group;
   using Object::Object;
+  /// The shape, if it is of numbers that the file is long enough for.
+  Shape readable_shape() const;
+  /// The same of some rows.
+  Shape readable_rows(std::size_t first, std::size_t count) const;
   void get(Number type, void* values) const;
   void get(Number type, std::size_t first, std::size_t count, void* values) const;
   void append(Number type, std::size_t size, const void* values);
@@ -142,13 +146,14 @@ class Group : public Object {
   bool has(const std::string& name) const;
   std::vector<std::string> names() const;  ///< of groups and datasets, sorted
 
-  /// A dataset of fixed size, written at once.
+  /// A dataset of fixed size, written at once, with checksums: reading fails if its numbers are damaged.
   template <class T>
   Dataset write(const std::string& name, const Shape& shape, std::span<const T> values) {
     return write(name, shape, number_of<T>(), values.size(), values.data());
   }
-  /// Writes bytes with checksums: reading fails if they are damaged.
-  Dataset write_checked(const std::string& name, std::span<const std::byte> bytes);
+  Dataset write(const std::string& name, std::span<const std::byte> bytes) {
+    return write(name, {bytes.size()}, Number::uint8, bytes.size(), bytes.data());
+  }
   /// A dataset whose first dimension grows; `row` is the shape of one row.
   template <class T>
   Dataset create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk) {
@@ -165,14 +170,20 @@ class Group : public Object {
 
 enum class Mode {
   read,
-  copy,  ///< reads the whole file into memory when it is opened
-  change,
-  replace
+  read_whole,  ///< the same, but refuses files that were not written with `write_whole`
+  copy,        ///< reads the whole file into memory when it is opened
+  change,      ///< of `replace`; removes the seal, see storage/seal.hpp
+  replace,
+  /// Writes a file that is read only when it is complete: under another name until then, see publish(). All of its
+  /// metadata has checksums, so that the library never follows damaged metadata.
+  write_whole
 };
 
-/// An open file. It is not locked, so that it can be read while it is being written. It uses the oldest format, which
-/// has neither checksums nor an "open for writing" mark that a killed writer would leave behind. Data may be on disk
-/// only after flush() or close(); metadata is written only then. Groups and datasets are closed with the file.
+/// An open file. It is not locked, so that it can be read while it is being written. Files that are read while they
+/// grow
+/// (`replace`) use the oldest format. It has neither checksums of metadata, which a writer that is killed within a
+/// write would leave wrong, nor an "open for writing" mark, which it would leave behind. Data may be on disk only after
+/// flush() or close(); metadata is written only then. Groups and datasets are closed with the file.
 class File : public Group {
  public:
   File(const std::filesystem::path& path, Mode mode);

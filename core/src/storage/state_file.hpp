@@ -16,8 +16,7 @@ struct StateFile {
 
 /// Writes a temporary file and renames it once it is on disk, so that a complete file always exists. `previous`: the
 /// name under which the file that is replaced is kept; empty: none. Attributes: format, stage, time [s] and step.
-/// Datasets with checksums: "facts" and "state". After the end of the HDF5 file follows a checksum of all its bytes.
-/// Throws FileError.
+/// Datasets: "facts" and "state". The file is sealed. Throws FileError.
 void write_state(const std::filesystem::path& path, const StateFile& file, const std::filesystem::path& previous = {});
 
 /// Throws FileError for an incomplete or damaged file, or one of another format. The checksum of all bytes comes first,
