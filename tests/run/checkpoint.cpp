@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
 
 #include "grit/error.hpp"
 #include "support/clump.hpp"
@@ -12,6 +15,7 @@
 namespace grit::test::checkpoint_tests {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 const Description sand{{"contact_modulus", 1e6}, {"density", 2600}};
@@ -424,6 +428,105 @@ TEST(Checkpoint, OfAnotherSceneIsRefused) {
   Checkpoint longer = good;
   longer.state.emplace_back();
   EXPECT_THAT(error_of(servo(), longer), HasSubstr("holds more than this simulation restores"));
+}
+
+/// The message with which a state is refused; empty if it is not. Runs on for a few steps.
+std::string refusal(const Description& d, const Checkpoint& checkpoint) {
+  try {
+    const Taped rest(
+        d, 1, [](const Kernel&) { return true; }, &checkpoint);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+/// A saved state, and places in it.
+struct SavedState {
+  Checkpoint checkpoint;
+
+  /// The first byte after the name and the version of a part.
+  std::size_t part(const std::string& name) const {
+    Archive header;
+    header.part(name, 1);
+    const auto found = std::ranges::search(checkpoint.state, header.bytes());
+    EXPECT_FALSE(found.empty()) << name;
+    return static_cast<std::size_t>(found.end() - checkpoint.state.begin());
+  }
+  template <class T>
+  T read(std::size_t at) const {
+    T value;
+    std::memcpy(&value, checkpoint.state.data() + at, sizeof value);
+    return value;
+  }
+  template <class T>
+  Checkpoint with(std::size_t at, T value) const {
+    Checkpoint altered = checkpoint;
+    std::memcpy(altered.state.data() + at, &value, sizeof value);
+    return altered;
+  }
+};
+
+SavedState saved(const Description& d, std::uint64_t step) {
+  const Taped part(d, 1, [step](const Kernel& now) { return now.world().step() >= step; });
+  return {part.tape.checkpoints.back()};
+}
+
+TEST(Checkpoint, ThatWasAlteredIsRefused) {
+  const Description d = clumps();
+  const SavedState state = saved(d, 100);
+  ASSERT_EQ(refusal(d, state.checkpoint), "");
+  const std::uint32_t nowhere = 0xfffffff0;
+  const auto expect = [&](const Checkpoint& altered, const char* words) {
+    EXPECT_THAT(refusal(d, altered), HasSubstr(words));
+  };
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  expect(state.with(state.part("bodies") + 8, unknown), "the place, the size or the motion of a body is not a number");
+  // Contacts: the number of bodies, chunks of six numbers each, then the first bodies of pairs.
+  const std::size_t contacts = state.part("contacts"), chunks = state.read<std::uint64_t>(contacts + 8),
+                    pairs = contacts + 16 + 24 * chunks;
+  ASSERT_GT(state.read<std::uint64_t>(pairs), 100u);
+  expect(state.with(pairs + 8, nowhere), "a contact is of a body that is not there");
+  expect(state.with(contacts, std::uint64_t{7}), "contacts are of another number of bodies");
+  expect(state.with(contacts + 16, nowhere), "contacts of bodies are not one after the other");
+  // Contacts with walls: chunks, each with the places of its walls, and the bodies near them.
+  const std::size_t near = state.part("wall contacts") + 8, places = state.read<std::uint64_t>(near);
+  ASSERT_EQ(places, 2u);
+  expect(state.with(near + 8, nowhere), "bodies near walls are of other walls");
+  ASSERT_GT(state.read<std::uint64_t>(near + 8 + 4 * places), 0u);
+  expect(state.with(near + 16 + 4 * places, nowhere), "a body that is not there is near a wall");
+  // Periodic sides, after two corners of three numbers.
+  expect(state.with(state.part("cell") + 48, std::uint8_t{2}), "other axes of the cell are periodic");
+}
+
+TEST(Checkpoint, OfAnotherVersionOfAPartIsRefused) {
+  const Description d = servo();
+  const SavedState state = saved(d, 20);
+  const std::size_t version = sizeof(std::uint32_t);
+  EXPECT_THAT(refusal(d, state.with(state.part("neighbour lists") - version, std::uint32_t{2})),
+              HasSubstr("the saved state of \"neighbour lists\" has version 2, allowed is 1"));
+  EXPECT_THAT(refusal(d, state.with(state.part("streams") - version - 1, 'x')),
+              HasSubstr("the saved state holds other parts: \"streams\" is missing"));
+  EXPECT_THAT(refusal(d, state.with(state.part("force-chains") - version, std::uint32_t{9})),
+              AllOf(HasSubstr("probe \"force-chains\" cannot be restored from a checkpoint"),
+                    HasSubstr("\"force-chains\" has version 9, allowed is 1")));
+}
+
+/// Any number of the state may be anything: the run goes on or is refused.
+TEST(Checkpoint, ThatWasAlteredAnywhereDoesNotCrash) {
+  for (const Description& d : {servo(), clumps(), pouring(), every_probe()}) {
+    const SavedState state = saved(d, 60);
+    const std::size_t length = state.checkpoint.state.size() - 64;  // without what the tape keeps
+    std::size_t refused = 0;
+    constexpr std::size_t places = 120;
+    for (std::size_t i = 0; i < places; ++i) {
+      const std::size_t at = length * i / places;
+      const auto before = state.read<std::uint64_t>(at);
+      const std::uint64_t other = i % 2 == 0 ? ~std::uint64_t{0} : before ^ std::uint64_t{1} << i % 61;
+      refused += !refusal(d, state.with(at, other)).empty();
+    }
+    EXPECT_GT(refused, 5u);
+  }
 }
 
 /// A force that grows with the number of its calls, the state of an engine.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -40,7 +41,8 @@ inline constexpr bool plain_numbers<std::array<T, N>> = plain_numbers<T>;
 ///
 /// Members can be numbers, enums, vectors of grit/vec.hpp, strings, `std::optional`, `vector`, `deque`, `array`, `map`
 /// and `unordered_map` of these, and any type with its own `serialize(Archive&)`. Members that follow from others need
-/// not be saved: recompute them if restoring().
+/// not be saved: recompute them if restoring(). A checkpoint may have been altered: if restoring(), throw Error for
+/// members that do not fit together before they are used as indices or lengths.
 class Archive {
  public:
   /// An empty archive, to save into.
@@ -55,6 +57,20 @@ class Archive {
     (one(members), ...);
   }
 
+  /// Begins a part, such as the state of one component: saves its name and version. Restoring throws Error if another
+  /// part, or another version of it, was saved here. Raise the version whenever the members that follow change.
+  void part(const std::string& name, std::uint32_t version) {
+    std::string found = name;
+    std::uint32_t found_version = version;
+    one(found), one(found_version);
+    if (found != name)
+      throw Error("the saved state holds other parts: \"" + name +
+                  "\" is missing; it belongs to another component or version");
+    if (found_version != version)
+      throw Error("the saved state of \"" + name + "\" has version " + std::to_string(found_version) + ", allowed is " +
+                  std::to_string(version) + "; it belongs to another version of the component");
+  }
+
   /// The saved bytes.
   const std::vector<std::byte>& bytes() const { return bytes_; }
   /// Whether all bytes have been restored.
@@ -64,7 +80,11 @@ class Archive {
   template <class T>
   void one(T& member) {
     static_assert(!std::is_const_v<T>, "a member that is restored cannot be const");
-    if constexpr (plain_numbers<T>) {
+    if constexpr (std::same_as<T, bool>) {
+      std::uint8_t byte = member ? 1 : 0;
+      raw(&byte, 1);
+      member = byte != 0;
+    } else if constexpr (plain_numbers<T>) {
       raw(&member, 1);
     } else {
       static_assert(
@@ -75,15 +95,30 @@ class Archive {
   }
   template <class T, class Allocator>
   void one(std::vector<T, Allocator>& list) {
-    list.resize(length<T>(list.size()));
-    if constexpr (plain_numbers<T>) raw(list.data(), list.size());
-    else
-      for (T& entry : list) one(entry);
+    const std::size_t count = length<T>(list.size());
+    if constexpr (plain_numbers<T>) {
+      list.resize(count);
+      raw(list.data(), count);
+    } else {
+      entries_of(list, count);
+    }
   }
   template <class T>
   void one(std::deque<T>& list) {
-    list.resize(length<T>(list.size()));
-    for (T& entry : list) one(entry);
+    entries_of(list, length<T>(list.size()));
+  }
+  /// One after the other: an altered length allocates no more than the archive has entries for.
+  template <class List>
+  void entries_of(List& list, std::size_t count) {
+    if (!restoring_) {
+      for (auto& entry : list) one(entry);
+      return;
+    }
+    list.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      list.emplace_back();
+      one(list.back());
+    }
   }
   void one(std::string& text) {
     text.resize(length<char>(text.size()));

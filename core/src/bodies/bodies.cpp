@@ -1,9 +1,11 @@
 #include "bodies/bodies.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "bodies/reordering.hpp"
+#include "bodies/restored.hpp"
 #include "grit/error.hpp"
 
 namespace grit {
@@ -19,7 +21,57 @@ void permute(Array& values, std::span<const std::uint32_t> order, std::size_t co
   values.swap(moved);
 }
 
+bool finite(const Row& row) {
+  return std::isfinite(row.x) && std::isfinite(row.y) && std::isfinite(row.z) && std::isfinite(row.w);
+}
+
+void check_restored(const Clumps& clumps, std::size_t bodies, std::uint32_t ids_given) {
+  expect_restored(clumps.of_body.empty() ? clumps.none() : clumps.of_body.size() == bodies,
+                  "the bodies of clumps have another number than the bodies");
+  expect_restored(clumps.volume_fraction.size() == clumps.of_body.size(), "lists of clumps have different lengths");
+  std::size_t of_clumps = 0;
+  for (std::size_t c = 0; c < clumps.clump.size(); ++c) {
+    const Clump& clump = clumps.clump[c];
+    expect_restored(clump.first < clump.last && clump.last <= clumps.spheres.size(), "a clump has no spheres");
+    for (std::uint32_t k = clump.first; k < clump.last; ++k)
+      expect_restored(clumps.spheres[k] < bodies && clumps.of_body[clumps.spheres[k]].clump == c,
+                      "a clump has a sphere that is not there, or is of another clump");
+    of_clumps += clump.last - clump.first;
+    expect_restored(clump.id < ids_given, "a clump has a number that was not given");
+    expect_restored(clump.centre.allFinite() && clump.velocity.allFinite() && clump.momentum.allFinite() &&
+                        clump.spin.allFinite() && clump.axes.allFinite() && clump.inertia.allFinite() &&
+                        std::isfinite(clump.inverse_mass) && std::isfinite(clump.furthest) && clump.radius > 0,
+                    "the place or the motion of a clump is not a number");
+  }
+  expect_restored(of_clumps == clumps.spheres.size(), "spheres are of no clump, or of several");
+  const auto in_clump = [](const ClumpSphere& own) { return own.clump != no_clump; };
+  expect_restored(static_cast<std::size_t>(std::ranges::count_if(clumps.of_body, in_clump)) == of_clumps,
+                  "a body is of a clump that is not there");
+}
+
 }  // namespace
+
+void check_restored(const Bodies& bodies, std::size_t materials, std::span<const std::string> groups) {
+  const std::size_t count = bodies.count();
+  expect_restored(bodies.position.size() == count + 1 && bodies.velocity.size() == count + 1 &&
+                      bodies.spin.size() == count + 1 && bodies.material.size() == count + 1 &&
+                      bodies.rotation.size() == (bodies.state.has(BodyState::rotation) ? count : 0) &&
+                      bodies.origin.size() == (bodies.state.has(BodyState::displacement) ? count : 0),
+                  "lists of bodies have different lengths");
+  for (std::size_t i = 0; i < count; ++i) {
+    expect_restored(
+        finite(bodies.position[i]) && bodies.position[i].w > 0 && finite(bodies.velocity[i]) && finite(bodies.spin[i]),
+        "the place, the size or the motion of a body is not a number");
+    expect_restored(bodies.id[i] < bodies.ids_given, "a body has a number that was not given");
+    expect_restored(bodies.material[i] < materials, "a body has a material that the description lacks");
+  }
+  expect_restored(bodies.position[count].w == 0 && bodies.material[count] == 0, "the end of the bodies was changed");
+  expect_restored(std::ranges::is_sorted(bodies.groups, {}, &BodyGroup::first_id), "groups of bodies do not ascend");
+  for (const BodyGroup& group : bodies.groups)
+    expect_restored(std::ranges::find(groups, group.name) != groups.end(),
+                    "bodies are of a group that the description lacks");
+  check_restored(bodies.clumps, count, bodies.clump_ids_given);
+}
 
 void Bodies::reserve(std::size_t more) {
   const std::size_t all = count() + more + 1;

@@ -61,4 +61,7 @@ struct Bodies {
   }
 };
 
+/// Throws Error unless restored bodies fit together. `materials`: their number; `groups`: names of the scene.
+void check_restored(const Bodies& bodies, std::size_t materials, std::span<const std::string> groups);
+
 }  // namespace grit

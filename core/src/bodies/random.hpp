@@ -27,6 +27,8 @@ class Random {
   /// Standard normal, by inversion; within ±8.3.
   double normal();
 
+  /// Whether the state is not all zero, from which all numbers would be zero.
+  bool is_valid() const { return state_ != std::array<std::uint64_t, 4>{}; }
   template <class Archive>
   void serialize(Archive& archive) {
     archive(state_);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "bodies/restored.hpp"
 #include "bodies/sizes.hpp"
 #include "bodies/whole_count.hpp"
 
@@ -131,7 +132,14 @@ void Stream::draw() {
   diameters_.insert(diameters_.begin(), more.begin(), more.end());
 }
 
-void Stream::serialize(Archive& archive) { archive(random_, begun_, diameters_, entered_, mass_, waiting_, next_); }
+void Stream::serialize(Archive& archive) {
+  archive(random_, begun_, diameters_, entered_, mass_, waiting_, next_);
+  if (!archive.restoring()) return;
+  expect_restored(random_.is_valid(), "the state of random numbers is zero");
+  expect_restored(waiting_ == 0 || !diameters_.empty(), "bodies of a stream wait that are not there");
+  const auto is_size = [](double diameter) { return diameter > 0 && std::isfinite(diameter); };
+  expect_restored(std::ranges::all_of(diameters_, is_size), "a body of a stream has no size");
+}
 
 double expected_rate(const StreamSource& source, const GroupBuilder& builder) {
   return source.number_rate ? *source.number_rate : *source.mass_rate / mean_mass(source, builder);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bodies/reordering.hpp"
+#include "bodies/restored.hpp"
 #include "grit/contact/fields.hpp"
 
 namespace grit {
@@ -336,10 +337,47 @@ std::size_t ContactTable::bytes() const {
 void ContactTable::serialize(Archive& archive) {
   archive(bodies_, chunks_, a_, b_, image_, touching_, acting_, asleep_until_, state_, first_cross_, near_);
   if (!archive.restoring()) return;
+  check_restored();
   // Rows of pairs in contact are written before they are read.
   row_.assign(a_.size() - first_cross_, {});
   make_inbox(bodies_);
   find_reached();
+}
+
+void ContactTable::check_restored() const {
+  const std::size_t slots = a_.size(), blocks = touching_.size();
+  expect_restored(slots % block_size == 0 && slots / block_size == blocks && b_.size() == slots &&
+                      near_.size() == slots && (image_.empty() || image_.size() == slots) &&
+                      (acting_.empty() || acting_.size() == blocks) && asleep_until_.size() == blocks &&
+                      state_.size() == blocks * fields_.size(),
+                  "lists of contacts have different lengths");
+  expect_restored(chunks_.size() == chunks_of(bodies_), "contacts are of another number of bodies");
+  std::uint32_t next = 0;
+  const auto take = [&](const Blocks& own) {
+    expect_restored(own.first == next && own.first <= own.near && own.near <= own.last && own.last <= blocks,
+                    "contacts of bodies are not one after the other");
+    next = own.last;
+  };
+  for (const Chunk& chunk : chunks_) take(chunk.within);
+  expect_restored(first_cross_ == std::size_t{next} * block_size, "contacts are of other bodies");
+  for (const Chunk& chunk : chunks_) take(chunk.across);
+  expect_restored(next == blocks, "there are more contacts than bodies have");
+  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk)
+    check_restored(chunk, chunks_[chunk].within, true), check_restored(chunk, chunks_[chunk].across, false);
+}
+
+void ContactTable::check_restored(std::size_t chunk, Blocks blocks, bool within) const {
+  const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_, first + chunk_bodies);
+  for (std::size_t c = std::size_t{blocks.first} * block_size; c < std::size_t{blocks.last} * block_size; ++c) {
+    expect_restored(a_[c] >= first && a_[c] < last, "a contact is of a body that is not there");
+    if (b_[c] == bodies_) {
+      expect_restored(!contacts(c), "a contact is of one body only");
+      continue;
+    }
+    expect_restored(b_[c] > a_[c] && (within ? b_[c] < last : b_[c] >= last && b_[c] < bodies_),
+                    "a contact is of a body that is not there");
+    expect_restored(image(c) < all_images, "a contact is across a side that is not there");
+  }
 }
 
 std::size_t ContactTable::touching_count() const {

@@ -154,8 +154,11 @@ class ContactTable {
   std::size_t touching_count() const;
   /// Memory [bytes].
   std::size_t bytes() const;
-  /// Lists in their order, which is that of all sums. Restored into a table whose fields are set.
+  /// Lists in their order, which is that of all sums. Restored into a table whose fields are set. Throws Error if they
+  /// do not fit together.
   void serialize(Archive& archive);
+  /// Number of bodies when the table was built.
+  std::size_t bodies() const { return bodies_; }
 
  private:
   static constexpr std::size_t blocks_at_once = 64;
@@ -224,6 +227,10 @@ class ContactTable {
   PairBatch batch(Blocks blocks, const Instant& at, std::uint32_t last_body) const;
   void evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,
                       std::vector<ContactRow>& rows) const;
+  /// Throws Error unless the restored lists fit together.
+  void check_restored() const;
+  /// The same of the pairs in some blocks of a chunk.
+  void check_restored(std::size_t chunk, Blocks blocks, bool within) const;
   void make_inbox(std::size_t bodies);
   void find_reached();
 

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "bodies/restored.hpp"
+
 namespace grit {
 namespace {
 
@@ -213,6 +215,15 @@ Demand CriticalStep::find(const Instant& at, Team& team) {
   std::vector<std::size_t> all(chunk_.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return evaluate(all, at, team);
+}
+
+void CriticalStep::check_restored(std::size_t bodies, std::size_t candidates) const {
+  expect_restored(demand_.size() == bodies && least_.size() == bodies && chunk_.size() == chunks_of(bodies),
+                  "the critical time step is of another number of bodies");
+  const auto is_there = [candidates](std::uint32_t c) { return c < candidates; };
+  for (const Chunk& chunk : chunk_)
+    expect_restored(std::ranges::all_of(chunk.near, is_there),
+                    "the critical time step is of contacts that are not there");
 }
 
 bool CriticalStep::moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const {

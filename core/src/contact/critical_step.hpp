@@ -65,6 +65,8 @@ class CriticalStep {
   /// Whether there are such chunks.
   bool due(const WallContacts& walls, const Skins& skins, const Change& change) const;
 
+  /// Throws Error unless restored values fit so many bodies, and candidates of ContactTable.
+  void check_restored(std::size_t bodies, std::size_t candidates) const;
   void serialize(Archive& archive) {
     archive(demand_, least_, clumps_.springs, clumps_.dashpots, clumps_.dashpot, chunk_);
   }

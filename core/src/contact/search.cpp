@@ -49,7 +49,8 @@ std::array<int, 3> cells(const Vec3& length, double width, std::size_t bodies) {
   for (;; width *= 1.5) {
     double total = 1;
     for (int k = 0; k < 3; ++k) {
-      const double count = std::clamp(std::floor(length[k] / width), 1.0, 2e6);
+      const double fitting = std::floor(length[k] / width);
+      const double count = fitting > 1 ? std::min(fitting, 2e6) : 1;  // one of a length that is not a number
       size[k] = static_cast<int>(count);
       total *= count;
     }

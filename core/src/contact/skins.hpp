@@ -36,6 +36,7 @@ class Skins {
     wall_.skin = wall, wall_.gone = 0, wall_.walked_at_search = wall_.walked;
   }
 
+  std::size_t chunks() const { return chunk_.size(); }
   double of_chunk(std::size_t chunk) const { return chunk_[chunk].skin; }
   double of_body(std::size_t body) const { return chunk_[body / chunk_bodies].skin; }
   /// The skin of a chunk's bodies at walls [m], see Skins.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bodies/reordering.hpp"
+#include "bodies/restored.hpp"
 #include "grit/contact/fields.hpp"
 
 namespace grit {
@@ -430,6 +431,25 @@ double WallContacts::force_ahead(std::size_t wall, const WallSurface& surface, c
     sum += std::max(0.0, k.normal * contact.overlap + dashpot * closing);
   }
   return sum;
+}
+
+void WallContacts::check_restored(std::size_t bodies, std::size_t walls, std::size_t materials) const {
+  expect_restored(chunks_.size() == chunks_of(bodies), "contacts with walls are of another number of bodies");
+  for (std::size_t c = 0; c < chunks_.size(); ++c) {
+    const Chunk& chunk = chunks_[c];
+    const std::size_t first = c * chunk_bodies, last = std::min(bodies, first + chunk_bodies);
+    const auto is_here = [&](std::uint32_t body) { return body >= first && body < last; };
+    expect_restored(chunk.candidate_start.size() == walls + 1 && chunk.candidate_start.front() == 0 &&
+                        chunk.candidate_start.back() == chunk.candidate.size() &&
+                        std::ranges::is_sorted(chunk.candidate_start),
+                    "bodies near walls are of other walls");
+    expect_restored(std::ranges::all_of(chunk.candidate, is_here), "a body that is not there is near a wall");
+    expect_restored(chunk.state.size() == chunk.contact.size() * fields_.size(),
+                    "lists of contacts with walls have different lengths");
+    for (const WallContact& contact : chunk.contact)
+      expect_restored(is_here(contact.body) && contact.wall < walls && contact.material < materials,
+                      "a contact with a wall is of a body, a wall or a material that is not there");
+  }
 }
 
 std::size_t WallContacts::touching_count() const {

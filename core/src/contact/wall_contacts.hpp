@@ -142,6 +142,8 @@ class WallContacts {
   /// Number of contacts that overlap or have a force.
   std::size_t touching_count() const;
   void serialize(Archive& archive) { archive(chunks_); }
+  /// Throws Error unless restored contacts fit so many bodies, walls and materials.
+  void check_restored(std::size_t bodies, std::size_t walls, std::size_t materials) const;
 
  private:
   struct Chunk {

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "bodies/kinetic_energy.hpp"
+#include "bodies/restored.hpp"
 #include "contact/search.hpp"
 
 namespace grit {
@@ -125,6 +127,20 @@ void DeformingCell::update_images(double previous_dt) {
   }
 }
 
-void DeformingCell::serialize(Archive& archive) { archive(cell_, lengths_before_, tilt_before_, images_); }
+void DeformingCell::serialize(Archive& archive) {
+  const auto periodic = cell_.periodic;
+  archive(cell_, lengths_before_, tilt_before_, images_);
+  if (!archive.restoring()) return;
+  // By bytes, as an altered one may be neither true nor false.
+  expect_restored(std::memcmp(&periodic, &cell_.periodic, sizeof periodic) == 0, "other axes of the cell are periodic");
+  expect_restored(images_.size() == all_images, "the images of the cell have another number");
+  for (int k = 0; k < 3; ++k)
+    expect_restored(!cell_.periodic[k] ||
+                        (std::isfinite(cell_.low[k]) && std::isfinite(cell_.high[k]) && cell_.low[k] < cell_.high[k]),
+                    "a period of the cell is not a length");
+  expect_restored(cell_.strain_rate.allFinite() && cell_.shear_rate.allFinite() && cell_.tilt.allFinite() &&
+                      tilt_before_.allFinite(),
+                  "the deformation of the cell is not a number");
+}
 
 }  // namespace grit

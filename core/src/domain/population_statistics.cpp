@@ -1,7 +1,10 @@
 #include "domain/population_statistics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+
+#include "bodies/restored.hpp"
 
 namespace grit {
 
@@ -23,6 +26,19 @@ void PopulationStatistics::add(const Bodies& bodies, std::size_t first, std::siz
     diameters += 2 * clump.radius, mass += 1 / clump.inverse_mass, solids += clump.volume;
   }
   if (particles > 0) mean_diameter = diameters / static_cast<double>(particles), solid_density = mass / solids;
+}
+
+void PopulationStatistics::check_restored(const Bodies& bodies) const {
+  constexpr double rounding = 1e-6;  // growth multiplies these and the radii one by one
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    const double radius = bodies.position[i].w;
+    expect_restored(radius <= (1 + rounding) * largest_radius && radius >= (1 - rounding) * smallest_radius,
+                    "a body is larger or smaller than all that ever entered");
+  }
+  expect_restored(std::isfinite(largest_radius) && std::isfinite(mean_diameter) && std::isfinite(mass) &&
+                      std::isfinite(solid_density) && (particles == 0 || (smallest_radius > 0 && mean_diameter > 0)) &&
+                      (particles > 0 || bodies.count() == 0),
+                  "the sizes or the masses of all bodies are not numbers");
 }
 
 void PopulationStatistics::grow(double factor, double mass_inside) {

@@ -22,6 +22,8 @@ struct PopulationStatistics {
   /// All lengths have grown by `factor`; `mass_inside` [kg] has grown by its cube.
   void grow(double factor, double mass_inside);
 
+  /// Throws Error unless restored statistics fit restored bodies.
+  void check_restored(const Bodies& bodies) const;
   void serialize(Archive& archive) {
     archive(particles, mass, diameters, solids, mean_diameter, solid_density, largest_radius, smallest_radius, heaviest,
             one_material);

@@ -35,6 +35,7 @@ class DisplacementBounds {
   /// After bodies and walls have moved by one step. Throws NumericsError if a wall or body moved too far.
   void advance(State& state, Passes& passes);
 
+  void check_restored(std::size_t walls) const { walls_.check_restored(walls); }
   void serialize(Archive& archive) { archive(walls_, wall_speed_, wall_closing_, last_approach_, grown_, rate_); }
 
  private:

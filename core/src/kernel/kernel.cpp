@@ -285,15 +285,18 @@ Model Kernel::model() const {
 }
 
 void Kernel::save(Archive& archive) {
+  archive.part("walls", 1);
   archive(state_.walls);
   serialize(archive);
 }
 
 void Kernel::restore(const SceneDescription& scene, const Components& components, Archive& archive) {
+  archive.part("walls", 1);
   archive(state_.walls);
   state_.walls.change(scene, components);  // with their present poses and velocities
   take_settings(scene, components);
   serialize(archive);
+  state_.check_restored();
   state_.settings.growth_rate = growth_rate(scene, state_.stage);
   find_groups(state_);
   state_.sum.assign(state_.bodies.count() + 1, {});
@@ -302,11 +305,42 @@ void Kernel::restore(const SceneDescription& scene, const Components& components
   view_.invalidate();
 }
 
-/// Without walls, which come first, and without values that each step recomputes: sums, loads, surfaces.
+/// Names of the numbers that contacts keep, which the law declares.
+void Kernel::serialize_fields(Archive& archive) {
+  std::vector<std::string> names, found;
+  for (const StateField& field : state_.settings.fields) names.push_back(field.name);
+  found = names;
+  archive(found);
+  if (found == names) return;
+  const auto listed = [](const std::vector<std::string>& all) {
+    std::string text;
+    for (const std::string& name : all) text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? "nothing" : text;
+  };
+  throw Error("contacts of the saved state keep " + listed(found) + ", but those of this contact law keep " +
+              listed(names) + "; continue with the description that wrote it");
+}
+
+/// Without walls, which come first, and without values that each step recomputes: sums, loads, surfaces. Each part has
+/// a version, which is raised with any change of its members.
 void Kernel::serialize(Archive& archive) {
-  archive(state_.stage, state_.time, state_.cell, state_.bodies, state_.statistics, state_.lists);
-  archive(state_.pairs, state_.wall_contacts, state_.departures, state_.discharged_mass, state_.overlap);
-  archive(balance_, guard_, stepper_, inflow_);
+  const auto part = [&archive](const char* name, std::uint32_t version, auto&... members) {
+    archive.part(name, version);
+    archive(members...);
+  };
+  part("time", 1, state_.stage, state_.time);
+  part("cell", 1, state_.cell);
+  part("bodies", 1, state_.bodies, state_.statistics);
+  part("neighbour lists", 1, state_.lists);
+  archive.part("contact history", 1);
+  serialize_fields(archive);
+  part("contacts", 1, state_.pairs);
+  part("wall contacts", 1, state_.wall_contacts);
+  part("departures", 1, state_.departures, state_.discharged_mass);
+  part("energy", 1, state_.overlap, balance_, guard_);
+  part("time step", 1, stepper_);
+  part("streams", 1, inflow_);
+  archive.part("run time", 1);
   passes_.serialize(archive, state_.bodies.count());
   for (const auto& [name, engine] : state_.settings.engines)
     serialize_component("engine \"" + name + '"', *engine, archive);

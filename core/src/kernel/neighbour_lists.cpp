@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "bodies/restored.hpp"
+
 namespace grit {
 
 namespace {
@@ -117,6 +119,11 @@ double NeighbourLists::shortest_period(const Bodies& bodies, const PopulationSta
   return NeighbourSearch::shortest_period(statistics.largest_radius, least_skin * statistics.mean_diameter,
                                           largest_reach(reaches)) +
          2 * furthest;
+}
+
+void NeighbourLists::check_restored(std::size_t bodies) const {
+  expect_restored(skins_.chunks() == chunks_of(bodies) && reference_.size() == bodies + 1,
+                  "neighbour lists are of another number of bodies");
 }
 
 void NeighbourLists::serialize(Archive& archive) {

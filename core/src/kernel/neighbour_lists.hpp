@@ -54,6 +54,8 @@ class NeighbourLists {
                                 std::span<const double> reaches);
 
   void serialize(Archive& archive);
+  /// Throws Error unless restored lists fit so many bodies.
+  void check_restored(std::size_t bodies) const;
 
  private:
   static constexpr std::uint64_t sort_every = 8;

@@ -1,5 +1,10 @@
 #include "kernel/state.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "bodies/restored.hpp"
+
 namespace grit {
 
 MotionStep State::next_motion(bool energies) const {
@@ -23,6 +28,24 @@ MotionStep State::next_motion(bool energies) const {
           .shear_rate = box.shear_rate,
           .tilt = box.tilt + dt * tilt_growth,
           .tilt_growth = tilt_growth};
+}
+
+void State::check_restored() const {
+  const std::size_t count = bodies.count();
+  grit::check_restored(bodies, materials.size(), settings.groups);
+  statistics.check_restored(bodies);
+  lists.check_restored(count);
+  expect_restored(pairs.bodies() == count, "contacts are of another number of bodies");
+  wall_contacts.check_restored(count, walls.size(), materials.size());
+  expect_restored(std::isfinite(time.time) && std::isfinite(time.dt) && time.dt > 0 &&
+                      std::isfinite(time.previous_dt) && time.previous_dt >= 0,
+                  "the time or the time step is not a number");
+  for (const WallState& wall : walls.states())
+    expect_restored(wall.pose.about.allFinite() && wall.pose.shift.allFinite() && wall.pose.turn.allFinite() &&
+                        wall.velocity.allFinite() && wall.spin.allFinite(),
+                    "the place or the motion of a wall is not a number");
+  const auto has_material = [this](const Departure& one) { return one.material < materials.size(); };
+  expect_restored(std::ranges::all_of(departures, has_material), "a body that left has an unknown material");
 }
 
 std::size_t State::bytes() const {

@@ -57,6 +57,8 @@ struct State {
   bool deforms() const { return cell.deforms() || settings.cell_servo; }
   /// Discharged mass over all mass that entered.
   double discharged_fraction() const { return statistics.mass > 0 ? discharged_mass / statistics.mass : 0; }
+  /// Throws Error unless the parts of a restored state fit together: whatever is used as an index or a length.
+  void check_restored() const;
   /// Memory of bodies and contacts [bytes].
   std::size_t bytes() const;
 };

@@ -377,6 +377,8 @@ void Stepper::end_step() {
 }
 
 void Stepper::restored() {
+  time_step_.check_restored(state_);
+  bounds_.check_restored(state_.walls.size());
   repeat_walls(state_);
   readiness_.build(state_.pairs.reached());
 }

@@ -41,7 +41,7 @@ class Stepper {
   double body_steps() const { return body_steps_; }
 
   void serialize(Archive& archive);
-  /// After the state has been restored.
+  /// After the state has been restored. Throws Error unless this fits it.
   void restored();
 
  private:

@@ -34,6 +34,10 @@ class TimeStepControl {
   /// free walls have stiffer contacts.
   void react(bool may_have_stiffened, State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
 
+  /// Throws Error unless what was restored fits the state.
+  void check_restored(const State& state) const {
+    critical_.check_restored(state.bodies.count(), state.pairs.candidates());
+  }
   void serialize(Archive& archive) {
     archive(critical_, contacts_, walls_, engines_, critical_time_step_, requested_, stiffening_);
   }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "bodies/restored.hpp"
 #include "grit/archive.hpp"
 #include "kernel/state.hpp"
 
@@ -23,6 +24,8 @@ class WallSpeeds {
   /// Speed along the normal of the surface [m/s]: a flat wall may move in its own plane at any speed.
   double normal_speed(const State& state, std::size_t wall, const WallMotion& motion, double gone);
 
+  /// Throws Error unless restored speeds are of so many walls.
+  void check_restored(std::size_t walls) const { expect_restored(arms_.size() == walls, "speeds are of other walls"); }
   void serialize(Archive& archive) { archive(arms_); }
 
  private:

@@ -192,6 +192,10 @@ void ResultsFolder::serialize(Archive& archive) {
   std::ranges::copy_if(options_.walls, std::back_inserter(clipped), is_clipped);
   archive(clipped);
   if (!archive.restoring()) return;
+  for (std::size_t i = 0; i < std::max(resumed_.steps.size(), resumed_.values.size()); ++i)
+    if (resumed_.steps.size() != resumed_.values.size() || resumed_.steps[i].size() != resumed_.values[i].size())
+      throw Error(
+          "the saved state is damaged or was altered: its curves have different lengths; use another checkpoint");
   std::erase_if(options_.walls, is_clipped);
   std::ranges::move(clipped, std::back_inserter(options_.walls));
 }

@@ -110,6 +110,8 @@ void RunJson::serialize(Archive& archive) {
   archive(started, stages, wall, cpu);
   if (!archive.restoring()) return;
   json_["started"] = started, json_["stages"] = Description::parse(stages);
+  if (!json_["stages"].is_array())
+    throw Error("the saved state is damaged or was altered: its stages are no list; use another checkpoint");
   wall_before_ = wall, cpu_before_ = cpu;
 }
 

@@ -1,6 +1,7 @@
 // State of plugins in checkpoints.
 #pragma once
 
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,13 +15,14 @@ namespace grit {
 /// and does not affect others. Throws PluginError.
 template <class Component>
 void serialize_component(const std::string& who, Component& component, Archive& archive) {
+  archive.part(who, 1);
   std::vector<std::byte> own;
   if (!archive.restoring()) own = saved_state(component);
   archive(own);
   if (!archive.restoring()) return;
   try {
     restore_state(component, std::move(own));
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     throw PluginError(who + " cannot be restored from a checkpoint: " + error.what());
   }
 }

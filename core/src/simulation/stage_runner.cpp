@@ -14,6 +14,10 @@ namespace {
 
 constexpr std::uint64_t contacts_counted_every = 100;  // steps
 
+[[noreturn]] void refuse_texts() {
+  throw Error("the saved state is damaged or was altered: a text is not JSON; use another checkpoint, or start again");
+}
+
 double interior_void_ratio(const World& world) { return void_ratio(world, world.interior(world.mean_diameter())); }
 
 }  // namespace
@@ -51,7 +55,7 @@ void StageRunner::begin_recording() {
   recorder_.begin(world_, groups);
 }
 
-void StageRunner::resume(const Checkpoint& checkpoint) {
+void StageRunner::resume(const Checkpoint& checkpoint) try {
   Archive archive(checkpoint.state);
   restore_kernel(archive);
   if (done()) throw Error("a checkpoint of a complete simulation; there is nothing to resume");
@@ -59,14 +63,19 @@ void StageRunner::resume(const Checkpoint& checkpoint) {
   if (!archive.at_end()) throw Error("a checkpoint holds more than this simulation restores");
   begin_recording();
   enter_stage();
+} catch (const Description::exception&) {
+  refuse_texts();
 }
 
-void StageRunner::restore_kernel(const Checkpoint& checkpoint) {
+void StageRunner::restore_kernel(const Checkpoint& checkpoint) try {
   Archive archive(checkpoint.state);
   restore_kernel(archive);
+} catch (const Description::exception&) {
+  refuse_texts();
 }
 
 void StageRunner::restore_kernel(Archive& archive) {
+  archive.part("stages", 1);
   archive(stage_, increments_, sets_);
   const std::size_t stage = std::min(stage_, scene_.stages.size() - 1);  // the last one if all are complete
   stages_begun_ = stage + 1;
@@ -74,6 +83,9 @@ void StageRunner::restore_kernel(Archive& archive) {
     throw Error("a checkpoint in stage " + std::to_string(stage_ + 1) + ", but the description has " +
                 std::to_string(scene_.stages.size()) + "; continue with the description that wrote it");
   for (const Set& set : sets_) {
+    if (set.stage > stage || set.increments > scene_.stages[set.stage].increments())
+      throw Error("a checkpoint with a value that was set in stage " + std::to_string(set.stage + 1) +
+                  ", which it has not reached; it is damaged or was altered");
     live_.go_to(set.stage, set.increments);
     const auto value = Description::parse(set.value);
     if (set.in_place) live_.restore(set.pointer, value.get<double>());
@@ -218,6 +230,7 @@ Checkpoint StageRunner::save() {
   const Stopwatch watch(phases_[1].seconds);
   recorder_.flush();
   Archive archive;
+  archive.part("stages", 1);
   archive(stage_, increments_, sets_);
   kernel_.save(archive);
   serialize(archive);
@@ -225,11 +238,13 @@ Checkpoint StageRunner::save() {
 }
 
 void StageRunner::serialize(Archive& archive) {
+  archive.part("probes", 1);
   archive(instant_.is_decided, instant_.may_end);
   archive(start_.time, start_.step, start_.discharged_fraction, frames_, last_frame_, contact_samples_, contact_sum_,
           stepping_);
   for (PhaseTime& phase : phases_) archive(phase.seconds);
   for (Observer& observer : observers_) observer.serialize(archive);
+  archive.part("results", 1);
   recorder_.serialize(archive);
 }
 

@@ -21,7 +21,10 @@ class FacetsProbe final : public Probe {
   /// Area, pressure and shear of each facet, as means of the samples since the previous frame; without a sample, at
   /// this instant.
   std::vector<Field> fields(const World& world) override;
-  void serialize(Archive& archive) override { archive(sum_, samples_); }
+  void serialize(Archive& archive) override {
+    archive.part("facets", 1);
+    archive(sum_, samples_);
+  }
 
  private:
   struct Facet {

@@ -25,7 +25,10 @@ class ForceChainsProbe : public Probe {
   void sample(const World& world, ChannelValues& values) override;
   /// Both ends, normal force, class and chain of every contact.
   std::vector<Field> fields(const World& world) override;
-  void serialize(Archive& archive) override { archive(before_, now_, step_); }
+  void serialize(Archive& archive) override {
+    archive.part("force-chains", 1);
+    archive(before_, now_, step_);
+  }
 
  private:
   /// The contacts that count.

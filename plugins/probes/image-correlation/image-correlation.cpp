@@ -312,10 +312,31 @@ std::vector<Field> ImageCorrelation::fields(const World& world) {
   return fields;
 }
 
+void ImageCorrelation::check_restored(const Image& start) const {
+  if (!view_) {
+    if (!start.grey.empty() || !subsets_.empty()) throw Error("the saved picture has no view");
+    return;
+  }
+  const auto fits = [](std::ptrdiff_t size) { return size > 0 && size <= static_cast<std::ptrdiff_t>(most_pixels); };
+  const SquareGrid& grid = view_->subsets;
+  const auto lies_within = [&](std::ptrdiff_t first, std::ptrdiff_t count, std::ptrdiff_t size) {
+    return count >= 0 && count <= size &&
+           (count == 0 || (first >= half() && first < size && first + (count - 1) * grid.apart + half() < size));
+  };
+  if (!fits(view_->width) || !fits(view_->height) || start.width != view_->width || start.height != view_->height ||
+      static_cast<std::size_t>(start.width * start.height) != start.grey.size() || !fits(grid.apart) ||
+      !lies_within(grid.left, grid.columns, view_->width) || !lies_within(grid.bottom, grid.rows, view_->height) ||
+      static_cast<std::size_t>(grid.columns * grid.rows) != subsets_.size() || !(view_->pixel > 0))
+    throw Error("the saved picture does not fit its view");
+}
+
 void ImageCorrelation::serialize(Archive& archive) {
+  archive.part("image-correlation", 1);
   Image start = start_.full;  // what is made of it is made again
   archive(began_, stage_, step_, view_, start.width, start.height, start.grey, walls_.wall, walls_.driver, subsets_);
-  if (archive.restoring()) start_ = start.grey.empty() ? ReferenceImage() : ReferenceImage(std::move(start));
+  if (!archive.restoring()) return;
+  check_restored(start);
+  start_ = start.grey.empty() ? ReferenceImage() : ReferenceImage(std::move(start));
 }
 
 }  // namespace grit

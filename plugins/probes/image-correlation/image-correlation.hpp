@@ -63,6 +63,8 @@ class ImageCorrelation final : public Probe {
     double away;  ///< sign of the depth axis along the line of sight
   };
   Axes axes() const;
+  /// Throws Error unless the restored picture and its subsets fit the restored view.
+  void check_restored(const Image& start) const;
   std::optional<View> view(const World& world) const;
   double pixels(const World& world) const;
   Image picture(const World& world, const View& view) const;

@@ -109,6 +109,14 @@ void Spectrum::prepare(const World& world) {
   begin_again();
 }
 
+void Spectrum::serialize(Archive& archive) {
+  archive.part("spectrum", 1);
+  archive(last_, first_time_, count_);
+  for (Welch& one : welch_) archive(one);
+  const bool goes_on = !first_time_ || (last_ && *first_time_ + static_cast<double>(count_) * interval > last_->time);
+  if (archive.restoring() && !goes_on) throw Error("the saved points do not reach the last sample");
+}
+
 std::vector<Channel> Spectrum::channels() const {
   const auto bins = static_cast<std::size_t>(points / 2 + 1);
   const std::string unknown = "; NaN before the first window is full";

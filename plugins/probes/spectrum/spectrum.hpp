@@ -24,7 +24,7 @@ class Spectrum final : public Probe {
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
   void sample(const World& world, ChannelValues& values) override;
-  void serialize(Archive& archive) override { archive(last_, first_time_, count_, welch_); }
+  void serialize(Archive& archive) override;
 
  private:
   using Signals = std::array<double, 4>;  ///< acceleration along x, y, z [m/s²], pressure [Pa]

@@ -1,5 +1,6 @@
 #include "welch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -25,6 +26,15 @@ std::vector<double> power_density(std::span<const double> values, double interva
   for (std::size_t k = 0; k < density.size(); ++k)  // all but the first and the last stand for −k too
     density[k] = (k == 0 || k == n / 2 ? 1 : 2) * std::norm(parts[k]) * interval / weights;
   return density;
+}
+
+void Welch::serialize(Archive& archive) {
+  archive(values_, densities_, mean_);
+  const std::size_t length = points_ / 2 + 1;
+  const auto fits = [length](const std::vector<double>& one) { return one.size() == length; };
+  if (mean_.size() != length || values_.size() >= points_ || densities_.size() > windows_ ||
+      !std::all_of(densities_.begin(), densities_.end(), fits))
+    throw Error("the saved windows have other lengths");
 }
 
 void Welch::add(double value) {

@@ -31,7 +31,8 @@ class Welch {
   std::size_t windows() const { return densities_.size(); }
   /// points / 2 + 1 values; NaN before the first window is full.
   const std::vector<double>& mean() const { return mean_; }
-  void serialize(Archive& archive) { archive(points_, windows_, interval_, values_, densities_, mean_); }
+  /// Throws Error if the saved windows are others.
+  void serialize(Archive& archive);
 
  private:
   std::size_t points_ = 0, windows_ = 0;
