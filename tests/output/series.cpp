@@ -5,12 +5,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
+#include <functional>
 
 #include "folder.hpp"
 #include "grit/error.hpp"
 #include "output/read_results.hpp"
 #include "storage/seal.hpp"
+#include "storage/trial.hpp"
 
 namespace grit::series_tests {
 namespace {
@@ -154,6 +157,25 @@ TEST(Series, ThatIsCompleteIsRefusedWithAnyFlippedByte) {
   }
   EXPECT_TRUE(is_sealed(path));
   EXPECT_EQ(read_channel(folder.path(), "test/time").samples, 6u);
+}
+
+// What libhdf5 did at damaged files: a crash, an abort, an endless loop.
+TEST(Trial, OfAReaderThatCrashesIsAnError) {
+  const auto error = [](const std::function<void()>& read) {
+    return error_of<FileError>([&] { try_in_child("series.h5", 1, read); });
+  };
+  const char* words = "series.h5: is damaged: the HDF5 library crashes at it, or does not finish";
+  EXPECT_EQ(error([] { ::raise(SIGSEGV); }), words);
+  EXPECT_EQ(error([] { std::abort(); }), words);
+  EXPECT_EQ(error([] {
+              for (volatile bool on = true; on;) {
+              }
+            }),
+            words);
+  bool here = false;
+  EXPECT_NO_THROW(try_in_child("series.h5", 1, [&] { here = true; }));
+  EXPECT_FALSE(here) << "in another process";
+  EXPECT_NO_THROW(try_in_child("series.h5", 1, [] { throw FileError("which the reader meets again"); }));
 }
 
 // A child process writes and reports the number of samples after each flush; it is killed in between.

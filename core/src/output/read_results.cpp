@@ -10,6 +10,7 @@
 #include "grit/toolkit/did_you_mean.hpp"
 #include "output/writing_mark.hpp"
 #include "storage/seal.hpp"
+#include "storage/trial.hpp"
 
 namespace grit {
 namespace {
@@ -42,6 +43,29 @@ bool has_rested(const Stamp& stamp) {
   return age < 0 || age >= rest_ns;  // negative if another machine's clock is ahead
 }
 
+/// The series of a run that was killed, or goes on, have no seal, and no checksums of their metadata: reads all of them
+/// in a child process.
+void try_reading(const std::filesystem::path& path) {
+  constexpr std::uintmax_t bytes_per_second = 10'000'000;  // far less than any disk reads
+  constexpr unsigned least = 20;
+  std::error_code none;
+  const std::uintmax_t length = std::filesystem::file_size(path, none);
+  const auto seconds = none ? least : least + static_cast<unsigned>(length / bytes_per_second);
+  try_in_child(path, seconds, [&] {
+    const hdf5::File file(path, hdf5::Mode::copy);
+    for (const std::string& probe : file.names()) {
+      const auto group = file.group(probe);
+      for (const std::string& name : group.names()) try {
+          const auto channel = group.dataset(name);
+          for (const char* text : {"units", "long_name", "coordinates", "components"})
+            if (channel.has_attribute(text)) static_cast<void>(channel.text(text));
+          static_cast<void>(channel.read<double>());
+        } catch (const FileError&) {  // others may still be read
+        }
+    }
+  });
+}
+
 /// A copy of the file taken while no writer was active: during a flush the file is temporarily inconsistent.
 hdf5::File settled(const std::filesystem::path& path, std::chrono::milliseconds patience) {
   const auto until = std::chrono::steady_clock::now() + patience;
@@ -49,7 +73,7 @@ hdf5::File settled(const std::filesystem::path& path, std::chrono::milliseconds 
     const Stamp before = stamp_of(path);
     const auto has_stayed = [&] { return !is_being_written(path) && stamp_of(path) == before; };
     if (has_rested(before) && !is_being_written(path)) try {
-        static_cast<void>(is_sealed(path));  // throws if the file was complete and is damaged
+        if (!is_sealed(path)) try_reading(path);
         hdf5::File copy(path, hdf5::Mode::copy);
         if (has_stayed()) return copy;
       } catch (const FileError&) {
