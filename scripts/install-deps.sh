@@ -3,7 +3,7 @@
 #   install-deps.sh [--run | --viewers | --sanitizers]
 #     --run         only what building and running grit needs: no libraries for tests and benchmarks
 #     --viewers     also Chromium and ParaView (1 GB), in which some tests open results as users do
-#     --sanitizers  also what the presets sanitize-address and sanitize-thread link, and what names functions in their reports
+#     --sanitizers  also what scripts/sanitize.sh and scripts/fuzz.sh need: sanitizers, libFuzzer, names of functions in reports, valgrind
 set -euo pipefail
 
 packages=(
@@ -26,7 +26,7 @@ for_tests=(
   python3 python3-h5py               # tests of vector instructions and of the documentation
 )
 viewers=(chromium paraview python3-paraview xvfb)
-sanitizers=(libclang-rt-16-dev llvm-16)
+sanitizers=(libclang-rt-16-dev llvm-16 valgrind)
 case ${1-} in
   --run) ;;
   '') packages+=("${for_tests[@]}") ;;

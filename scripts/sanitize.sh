@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Finds errors of memory, undefined behaviour and data races: builds and runs the whole test suite with sanitizers, or a
+# short run, its continuation and its report under valgrind. Needs scripts/install-deps.sh --sanitizers.
+#   sanitize.sh address|thread [ARGUMENTS OF CTEST…]     e.g. sanitize.sh thread -R resume
+#   sanitize.sh valgrind
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+case ${1-} in
+  address | thread)
+    preset=sanitize-$1
+    shift
+    cmake --preset "$preset" -DGRIT_BATCH_TESTS=ON -DCMAKE_UNITY_BUILD=ON
+    cmake --build --preset "$preset"
+    exec ctest --preset "$preset" -j"$(nproc)" "$@"
+    ;;
+  valgrind)
+    cmake --preset valgrind
+    cmake --build --preset valgrind
+    folder=$(mktemp -d)
+    trap 'rm -r "$folder"' EXIT
+    watched() {
+      echo "valgrind: grit $*"
+      valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite build-valgrind/bin/grit "$@" > "$folder/log" ||
+        { cat "$folder/log"; echo "valgrind: grit $* failed" >&2; exit 1; }
+    }
+    sets=(--set /stages/1/until/value=500 --set '/output={"frames": {"every_steps": 100}}'
+          --set '/walls={"floor": {"type": "plane", "point": [0, 0, "4.4 mm"], "normal": [0, 0, 1], "material": "sand"}}'
+          --set '/domain={"low": [0, 0, 0], "high": ["10 mm", "10 mm", "10 mm"], "periodic": [true, true, false]}'
+          --set '/probes={"packing": {"type": "packing", "every_steps": 50}, "chains": {"type": "force-chains", "every_steps": 50}}'
+          --set '/probes/energy={"type": "energy", "every_steps": 50}')
+    watched check bench/scenes/tiny.json "${sets[@]}"
+    watched run bench/scenes/tiny.json --out "$folder/run" --threads 2 "${sets[@]}"
+    watched report "$folder/run"
+    echo "valgrind: no errors"
+    ;;
+  *)
+    echo "sanitize: found '${1-}'; usage: sanitize.sh address|thread [ARGUMENTS OF CTEST…] | valgrind" >&2
+    exit 1
+    ;;
+esac
