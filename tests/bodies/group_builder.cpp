@@ -1,4 +1,5 @@
 // Bodies of one description that get the masses of another.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "bodies/group_builder.hpp"
@@ -64,6 +65,28 @@ TEST(GroupBuilder, TakesOverBodiesOfAnotherDensityOrScaling) {
     expect_masses_of({2600, 0}, {2600, below}, clumps);
     expect_masses_of({2600, 2 * below}, {1000, below}, clumps);
   }
+}
+
+/// The index of a material in a body has 8 bits.
+TEST(GroupBuilder, RefusesAMaterialWhoseIndexABodyCannotHold) {
+  const Made made(two_grains({2600, 0}, false));
+  SceneDescription scene = made.live.now();
+  const auto build = [&](std::size_t groups) {
+    scene.bodies.clear(), scene.materials.clear();
+    for (std::size_t i = 0; i < groups; ++i) {
+      const std::string name = "m" + std::to_string(1000 + i);
+      scene.materials[name].density = 2600;
+      scene.bodies.try_emplace(name, installed()).first->second.material = name;
+    }
+    const auto& [last, group] = *scene.bodies.rbegin();
+    Bodies bodies;
+    GroupBuilder(scene, group, made.live.components().body_kinds.at("grains"))
+        .add(bodies, Vec3::Zero(), 1e-3, Eigen::Quaterniond::Identity(), Vec3::Zero(), Vec3::Zero());
+    return bodies.material.front();
+  };
+  EXPECT_EQ(build(256), 255);
+  EXPECT_THAT([&] { build(257); }, testing::ThrowsMessage<Error>(testing::HasSubstr(
+                                       "found materials of bodies with the index 256; allowed are up to 256 of them")));
 }
 
 /// A sample that continues unchanged keeps its last bits.

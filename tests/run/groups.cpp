@@ -7,6 +7,7 @@
 
 #include "bodies/regions.hpp"
 #include "grit/testing/fake_world.hpp"
+#include "kernel/body_groups.hpp"
 #include "kernel/group_view.hpp"
 #include "support/clump.hpp"
 #include "support/notes.hpp"
@@ -27,6 +28,38 @@ Description two_groups(const std::vector<Grain>& grains, const std::vector<Grain
   return d;
 }
 Description gravity() { return {{"type", "gravity"}, {"acceleration", {0, 0, -g}}}; }
+
+TEST(Groups, AreRefusedBeyondTheirIndices) {
+  constexpr std::size_t most = 65536;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i <= most; ++i) names.push_back("g" + std::to_string(i));
+  Bodies bodies;
+  bodies.groups.push_back({names[most - 1], 0});
+  bodies.add(Vec3::Zero(), radius, 1, 1, 0);
+  EXPECT_EQ(groups_of(bodies, names), std::vector<std::uint16_t>{most - 1});
+  bodies.groups.front().name = names[most];
+  EXPECT_THAT([&] { groups_of(bodies, names); },
+              testing::ThrowsMessage<Error>(
+                  HasSubstr("found groups of bodies with the index 65536; allowed are up to 65536 of them")));
+}
+
+TEST(Groups, AreCountedBeforeARun) {
+  SceneDescription scene(installed());
+  for (std::size_t i = 0; i < 65536; ++i) scene.bodies.try_emplace("g" + std::to_string(i), installed());
+  Parameters parameters;
+  scene.declare(parameters);
+  const auto complaints = [&] {
+    std::vector<std::string> all;
+    for (const Check& check : parameters.checks())
+      check.run([&](std::string_view key, std::string_view found, std::string_view allowed) {
+        if (key == "bodies") all.push_back(fault_text(std::string(found), std::string(allowed)));
+      });
+    return all;
+  };
+  EXPECT_THAT(complaints(), testing::ElementsAre("found 65536 groups; allowed is 65535 or fewer"));
+  scene.bodies.erase("g0");
+  EXPECT_THAT(complaints(), testing::IsEmpty());
+}
 
 TEST(Groups, FixedBodiesCarryOthers) {
   // Three fixed spheres, a ball on top of them.

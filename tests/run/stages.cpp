@@ -56,6 +56,28 @@ Description shrinking(const Description& until, double rate) {
 
 std::uint64_t steps_until(const Description& until) { return run(lone(until)).summary().steps; }
 
+/// The index of a material in a contact must not depend on when the material is defined.
+TEST(Stage, MayGiveAWallAMaterialThatItAdds) {
+  const Description ice = {{"contact_modulus", modulus / 7}, {"friction_angle", 0.05}, {"density", density}};
+  const auto slid = [&](bool from_the_start) {
+    Description d = lone(steps(10));
+    d["materials"]["grain"]["friction_angle"] = 0.5;
+    auto& grain = d["bodies"]["grains"]["source"]["bodies"][0];
+    grain["position"] = {0, 0, 0.999 * radius}, grain["velocity"] = {0.1, 0, 0};
+    d["stages"].push_back(stage("on ice", steps(10)));
+    d["stages"][1]["change"] = {{"materials", {{"ice", ice}}}, {"walls", {{"floor", {{"material", "ice"}}}}}};
+    if (from_the_start) d["materials"]["ice"] = ice;
+    Trial t(d);
+    t.step(10);
+    t.begin_stage(1, "on ice");
+    t.step(10);
+    const State& state = t.kernel().state();
+    EXPECT_EQ(state.materials.at(state.surfaces.at(0).material), "ice");
+    return t.position(0);
+  };
+  EXPECT_EQ(slid(false), slid(true));
+}
+
 TEST(Stage, ReportsAServoThatFellBehind) {
   Description d = lone(steps(100));
   d["bodies"]["grains"]["source"]["bodies"][0]["position"] = {0, 0, radius};

@@ -1,9 +1,12 @@
 #include "contact/team.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <stdexcept>
+
+#include "grit/error.hpp"
 
 namespace grit::team_tests {
 namespace {
@@ -30,6 +33,20 @@ TEST(Team, TakesEachChunkOnce) {
       for (const auto& times : taken) EXPECT_EQ(times, 100) << threads << " threads, " << chunks << " chunks";
     }
   }
+}
+
+TEST(Team, RefusesMoreChunksThanItsTicketsHold) {
+  constexpr std::size_t most = (std::size_t{1} << 20) - 1;
+  Team team(2);
+  std::atomic<std::size_t> done = 0;
+  auto count = [&](std::size_t) { done.fetch_add(1, std::memory_order_relaxed); };
+  team.each(most, count);
+  EXPECT_EQ(done, most);
+  EXPECT_THAT(
+      [&] { team.each(most + 1, count); },
+      testing::ThrowsMessage<Error>(testing::HasSubstr(
+          "found 1048576 chunks of bodies; allowed with several threads are up to 1048575 of 256 bodies each")));
+  EXPECT_EQ(done, most);
 }
 
 }  // namespace

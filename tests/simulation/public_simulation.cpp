@@ -114,6 +114,9 @@ TEST(PublicSimulation, RefusesWhatCannotBeSet) {
   };
   EXPECT_EQ(problem("/materials/grain/friction_angle", 7).pointer, "/materials/grain/friction_angle");
   EXPECT_THAT(problem("/materials/grain/colour", 7).message, testing::HasSubstr("unknown key \"colour\""));
+  EXPECT_THAT(problem("/materials/ice", Description{{"density", 900}}).message,
+              testing::HasSubstr("found the material \"ice\", which is not defined; allowed are materials that are "
+                                 "defined when the run begins"));
   EXPECT_THAT(problem("/seed", 7).message, testing::HasSubstr("found a change of \"seed\""));
   EXPECT_THAT(problem("seed", 7).message, testing::HasSubstr("allowed is a JSON pointer"));
 }

@@ -11,6 +11,9 @@
 namespace grit {
 namespace {
 
+/// Ids and indices have 32 bits, the padding has an index too, and the largest one means none.
+constexpr std::size_t most_bodies = std::numeric_limits<std::uint32_t>::max() - 2;
+
 /// Values of `count` bodies and of the padding after them.
 template <class Array>
 void permute(Array& values, std::span<const std::uint32_t> order, std::size_t count) {
@@ -114,8 +117,8 @@ void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radiu
 }
 
 void Bodies::finish(StateRequest asked_for) {
-  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() - 1;  // the padding has an index, too
-  if (count() >= most) throw Error(std::to_string(count()) + " bodies; allowed are fewer than " + std::to_string(most));
+  if (count() > most_bodies)
+    throw Error(std::to_string(count()) + " bodies; allowed are up to " + std::to_string(most_bodies));
   constexpr double far_away = 1e18;  // its square is finite in single precision too
   position.push_back({far_away, far_away, far_away, 0});
   velocity.push_back({});
@@ -143,6 +146,9 @@ std::string Bodies::group_of(std::uint32_t body) const {
 }
 
 void Bodies::append(const Bodies& others) {
+  if (std::size_t{ids_given} + others.ids_given > most_bodies)
+    throw Error(std::to_string(std::size_t{ids_given} + others.ids_given) +
+                " bodies in all, with those that left; allowed are up to " + std::to_string(most_bodies));
   const auto before = static_cast<std::uint32_t>(count()),
              clumps_before = static_cast<std::uint32_t>(clumps.clump.size()),
              spheres_before = static_cast<std::uint32_t>(clumps.spheres.size());

@@ -308,6 +308,10 @@ BoundedShape shape_of(const CloudRegion& region, const Cell& cell) {
 std::vector<Row> make_cloud(const CloudSource& cloud, const Cell& cell, Random& random, std::span<const Row> others,
                             std::optional<double> shape_diameter) {
   const auto count = static_cast<std::size_t>(std::max<std::int64_t>(cloud.count, 0));
+  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();  // of the indices in Room
+  if (count + others.size() > most)
+    throw Error("cloud: " + std::to_string(count) + " bodies beside " + std::to_string(others.size()) +
+                " others; allowed are up to " + std::to_string(most) + " in all");
   const std::optional<int> flat =
       cloud.plane_normal == "none" ? std::nullopt : std::optional(cloud.plane_normal[0] - 'x');
   auto diameters = draw_diameters(cloud.sizes, count, random, shape_diameter);

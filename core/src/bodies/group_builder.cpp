@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bodies/make_bodies.hpp"
+#include "format/narrow.hpp"
 
 namespace grit {
 
@@ -13,7 +14,8 @@ GroupBuilder::GroupBuilder(const SceneDescription& scene, const BodiesDescriptio
       density_(scene.materials.at(group.material).density),
       scaled_below_(group.scaled_below()) {
   const auto names = material_names(scene);
-  material_ = static_cast<std::uint8_t>(std::ranges::find(names, group.material) - names.begin());
+  const auto place = std::ranges::find(names, group.material) - names.begin();
+  material_ = narrow_index<std::uint8_t>(static_cast<std::size_t>(place), "materials of bodies");
 }
 
 double GroupBuilder::inert(double radius) const { return std::max(radius, 0.5 * scaled_below_); }

@@ -17,8 +17,8 @@ namespace grit {
 /// All state of bodies that a component, or `also`, requests.
 StateRequest requested_state(const Components& components, StateRequest also = {});
 
-/// Materials in the order of their indices in bodies and walls. Materials of bodies come first, so that the index of
-/// all bodies is 0 if they have only one material.
+/// Materials in the order of their indices in bodies and walls, also those that stages add: indices never change.
+/// Materials of bodies come first, so that the index of all bodies is 0 if they have only one material.
 std::vector<std::string> material_names(const SceneDescription& scene);
 
 /// The number of materials of bodies, which are the first ones.

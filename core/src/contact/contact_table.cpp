@@ -10,6 +10,7 @@
 #include "bodies/reordering.hpp"
 #include "bodies/restored.hpp"
 #include "grit/contact/fields.hpp"
+#include "grit/error.hpp"
 
 namespace grit {
 namespace {
@@ -30,6 +31,20 @@ void make_room(Array& array, std::size_t count) {
 template <class Array>
 void give_back(Array& array) {
   Array().swap(array);
+}
+
+/// Indices of candidates have 31 bits.
+template <class Candidates>
+void check_size(const std::vector<std::size_t>& within, const Candidates& found) {
+  constexpr std::size_t most = std::size_t{1} << 31;
+  std::size_t slots = 0;
+  const auto add = [&](std::size_t pairs) { slots += (pairs + block_size - 1) / block_size * block_size; };
+  for (std::size_t chunk = 0; chunk < within.size(); ++chunk)
+    add(within[chunk]), add(found[chunk].size() - within[chunk]);
+  if (slots >= most)
+    throw Error("found " + std::to_string(slots) +
+                " pairs of bodies that are near each other; allowed are fewer than " + std::to_string(most) +
+                ": use fewer bodies, or sizes that differ less");
 }
 
 }  // namespace
@@ -92,6 +107,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
     for (const Candidate& c : found)
       found_[chunk][next[place(c)]++] = {c.b, c.gap, static_cast<std::uint8_t>(c.a - first), c.image};
   });
+  check_size(within_, found_);
   chunks_.resize(chunk_count);
   std::uint32_t blocks = 0;
   const auto take = [&](std::size_t pairs) {

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "contact/chunks.hpp"
 #include "grit/error.hpp"
 
 namespace grit {
@@ -68,6 +69,10 @@ void Team::stop() {
 }
 
 void Team::run(std::size_t chunks, Call call, void* context) {
+  if (chunks > index_mask)
+    throw Error("found " + std::to_string(chunks) + " chunks of bodies; allowed with several threads are up to " +
+                std::to_string(index_mask) + " of " + std::to_string(chunk_bodies) +
+                " bodies each: use one thread, or fewer bodies");
   call_ = call, context_ = context;
   left_.store(static_cast<std::uint32_t>(chunks), std::memory_order_relaxed);
   const std::uint32_t generation = (generation_.load(std::memory_order_relaxed) + 1) & generation_mask;

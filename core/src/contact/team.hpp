@@ -24,8 +24,9 @@ class Team {
 
   unsigned threads() const { return static_cast<unsigned>(workers_.size()) + 1; }
 
-  /// Calls work(chunk) for chunk = 0 … chunks − 1 (fewer than 2²⁰), from any thread, and returns when all are done. One
-  /// single thread takes them in order. If `work` throws, one of its exceptions is rethrown at the end. Not reentrant.
+  /// Calls work(chunk) for chunk = 0 … chunks − 1, from any thread, and returns when all are done. One single thread
+  /// takes them in order; several take fewer than 2²⁰ and throw Error for more. If `work` throws, one of its exceptions
+  /// is rethrown at the end. Not reentrant.
   template <class Work>
   void each(std::size_t chunks, Work&& work) {
     if (workers_.empty() || chunks < 2) {

@@ -125,11 +125,16 @@ void check_circles(const std::map<std::string, WallDescription>& walls, const Co
 
 // ---- checks between sections
 
-/// A body keeps the index of its material in one byte.
+/// A body keeps the index of its material in one byte, that of its group in two.
 void check_number_of_materials(const SceneDescription& scene, const Complain& complain) {
   constexpr std::size_t most = 255;
   if (scene.materials.size() > most)
     complain("materials", counted(scene.materials.size(), "material", "materials"), std::to_string(most) + " or fewer");
+}
+void check_number_of_groups(const SceneDescription& scene, const Complain& complain) {
+  constexpr std::size_t most = 65535;
+  if (scene.bodies.size() > most)
+    complain("bodies", counted(scene.bodies.size(), "group", "groups"), std::to_string(most) + " or fewer");
 }
 
 void check_interfaces(const SceneDescription& scene, const Complain& complain) {
@@ -1151,7 +1156,8 @@ bool SceneDescription::has_unit(const std::string& section, const std::string& n
 }
 
 InterfaceDescription* SceneDescription::find_interface(const std::string& name) {
-  const auto found = std::ranges::find(interfaces, name, &InterfaceDescription::name);
+  const auto found =
+      std::ranges::find_if(interfaces, [&](const InterfaceDescription& one) { return one.is_named(name); });
   return found == interfaces.end() ? nullptr : &*found;
 }
 
@@ -1197,6 +1203,7 @@ void SceneDescription::declare(Parameters& p) {
   });
 
   p.check_names([this](const Complain& complain) { check_number_of_materials(*this, complain); });
+  p.check_names([this](const Complain& complain) { check_number_of_groups(*this, complain); });
   p.check_names([this](const Complain& complain) { check_interfaces(*this, complain); });
   p.check_names([this](const Complain& complain) { check_materials_of_bodies(*this, complain); });
   p.check([this](const Complain& complain) { check_motions(*this, complain); }, {"bodies", "engines"});

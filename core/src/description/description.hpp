@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "grit/description.hpp"
@@ -293,6 +294,12 @@ struct InterfaceDescription {
   /// `name` as in the description, "a+b".
   explicit InterfaceDescription(const std::string& name);
   std::string name() const { return b.empty() ? a : a + '+' + b; }
+  /// The same as name() == other.
+  bool is_named(std::string_view other) const {
+    return b.empty() ? other == a
+                     : other.size() == a.size() + 1 + b.size() && other.starts_with(a) && other[a.size()] == '+' &&
+                           other.ends_with(b);
+  }
   /// As MaterialDescription::declare().
   void declare(ContactLaw* law, Parameters& p);
   bool operator==(const InterfaceDescription&) const = default;

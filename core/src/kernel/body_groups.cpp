@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "format/narrow.hpp"
 #include "grit/error.hpp"
 
 namespace grit {
@@ -27,7 +28,8 @@ GroupMask group_mask(const std::vector<std::string>& chosen, const std::vector<s
 std::vector<std::uint16_t> groups_of(const Bodies& bodies, const std::vector<std::string>& names) {
   std::vector<std::uint16_t> index;  // by entry of bodies.groups
   for (const BodyGroup& group : bodies.groups)
-    index.push_back(static_cast<std::uint16_t>(std::ranges::find(names, group.name) - names.begin()));
+    index.push_back(narrow_index<std::uint16_t>(
+        static_cast<std::size_t>(std::ranges::find(names, group.name) - names.begin()), "groups of bodies"));
   std::vector<std::uint16_t> of(bodies.count());
   for (std::size_t i = 0; i < of.size(); ++i) {
     const auto next = std::ranges::upper_bound(bodies.groups, bodies.id[i], {}, &BodyGroup::first_id);

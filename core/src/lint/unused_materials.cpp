@@ -3,68 +3,76 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cmath>
+#include <deque>
 #include <iterator>
+#include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
-#include "bodies/make_bodies.hpp"
 #include "lint/all_stages.hpp"
 #include "lint/small_changes.hpp"
+#include "plugins/parameter_values.hpp"
 
 namespace grit {
 namespace {
 
-/// Materials during a period of the run in which they do not change.
-struct Materials {
-  SceneDescription scene;  ///< only materials, interfaces, and the materials of bodies and walls
-  std::size_t stages = 0;  ///< number of stages that have begun
+/// Materials that may come into contact.
+struct MayTouch {
+  std::set<std::string> bodies, walls;
+  explicit MayTouch(const SceneDescription& now) {
+    for (const auto& [name, group] : now.bodies) bodies.insert(group.material);
+    for (const auto& [name, wall] : now.walls) walls.insert(wall.material);
+  }
+  bool operator==(const MayTouch&) const = default;
 };
 
-SceneDescription materials_alone(const SceneDescription& now) {
-  SceneDescription part(now.registry());
-  part.materials = now.materials, part.interfaces = now.interfaces;
-  for (const auto& [name, group] : now.bodies)
-    part.bodies.try_emplace(name, now.registry()).first->second.material = group.material;
-  for (const auto& [name, wall] : now.walls)
-    part.walls.try_emplace(name, now.registry()).first->second.material = wall.material;
-  return part;
-}
+/// Materials during a period of the run in which they do not change.
+struct Materials {
+  std::map<std::string, MaterialDescription> materials;
+  std::vector<InterfaceDescription> interfaces;
+  MayTouch may_touch;
+  std::size_t stages = 0;  ///< number of stages that have begun
+  LiveLaw law;
 
-std::vector<Materials> all_materials(const Scene& described) {
-  std::vector<Materials> all;
-  const auto of_walls = [](const SceneDescription& scene) {
-    std::vector<std::string> materials;
-    for (const auto& [name, wall] : scene.walls) materials.push_back(wall.material);
-    return materials;
-  };
-  through_stages(
-      *described.description, described.stages, [&](const SceneDescription& now, std::optional<std::size_t> stage) {
-        if (!all.empty()) {
-          const SceneDescription& last = all.back().scene;
-          if (last.materials == now.materials && last.interfaces == now.interfaces && of_walls(last) == of_walls(now))
-            return true;
-        }
-        all.push_back({materials_alone(now), stage ? *stage + 1 : 0});
-        return true;
-      });
+  Materials(const SceneDescription& now, std::size_t stages_begun)
+      : materials(now.materials), interfaces(now.interfaces), may_touch(now), stages(stages_begun), law(now) {}
+  bool has(const SceneDescription& now) const {
+    return materials == now.materials && interfaces == now.interfaces && may_touch == MayTouch(now);
+  }
+};
+
+std::deque<Materials> all_materials(const Scene& described) {
+  std::deque<Materials> all;
+  through_stages(*described.description, described.stages,
+                 [&](const SceneDescription& now, std::optional<std::size_t> stage) {
+                   if (all.empty() || !all.back().has(now)) all.emplace_back(now, stage ? *stage + 1 : 0);
+                   return true;
+                 });
   return all;
 }
 
-/// Appends the parameters of all possible contacts.
-void add_mixed(const SceneDescription& scene, MixedLaw& mixed, std::vector<double>& all) {
-  mixed.follow(scene);
-  const auto names = material_names(scene);
-  const auto number = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+/// Appends the parameters of a contact of two materials.
+void add_contact(ContactLaw& law, const std::string& a, const std::string& b, bool wall, std::vector<double>& all) {
+  std::vector<std::string> both{a};
+  if (b != a) both.push_back(b);
+  law.mix(both, wall ? 1 : both.size());
+  std::ranges::copy(law.mixed(0, both.size() - 1, wall), std::back_inserter(all));
+}
+
+/// Appends the parameters of all possible contacts of a material, or of two materials with each other. Others are not
+/// mixed, as they are many.
+void add_contacts(const Materials& one, const std::string& a, const std::string& b, std::vector<double>& all) {
+  const auto& [bodies, walls] = one.may_touch;
+  const auto add = [&](const std::string& body, const std::string& other) {
+    if (!bodies.contains(body)) return;
+    if (bodies.contains(other)) add_contact(*one.law, body, other, false, all);
+    if (walls.contains(other)) add_contact(*one.law, body, other, true, all);
   };
-  std::set<std::size_t> bodies, walls;
-  for (const auto& [name, group] : scene.bodies) bodies.insert(number(group.material));
-  for (const auto& [name, wall] : scene.walls) walls.insert(number(wall.material));
-  for (const std::size_t a : bodies) {
-    for (const std::size_t b : bodies) std::ranges::copy(mixed.law().mixed(a, b, false), std::back_inserter(all));
-    for (const std::size_t b : walls) std::ranges::copy(mixed.law().mixed(a, b, true), std::back_inserter(all));
-  }
+  if (!b.empty()) return add(a, b), add(b, a);
+  std::set<std::string> others = bodies;
+  others.insert(walls.begin(), walls.end());
+  for (const std::string& other : others) add(a, other), add(other, a);
 }
 
 /// The number of stages begun before which a value keeps its initial value.
@@ -91,64 +99,71 @@ const Parameter* declared(const Parameters& parameters, const std::string& key) 
 std::vector<UnusedSetting> unused_materials(const Scene& scene,
                                             const std::function<bool(const std::string&)>& is_written) {
   const SceneDescription& start = *scene.description;
-  std::vector<Materials> all = all_materials(scene);
-  MixedLaw mixed(start);
-  const auto numbers = [&] {
-    std::vector<double> found;
-    for (const Materials& one : all) add_mixed(one.scene, mixed, found);
-    return found;
-  };
-  const std::vector<double> now = numbers();
+  std::deque<Materials> all = all_materials(scene);
   std::vector<UnusedSetting> unused;
 
-  // `value_in` returns the value in a scene; null if the scene does not have it.
-  const auto inspect = [&](const std::string& section, const std::string& name, const std::string& key,
-                           const Description& value, const Parameters& parameters, const auto& value_in) {
-    const std::string pointer = fmt::format("/{}/{}/{}", section, pointer_token(name), pointer_token(key));
-    const Parameter* const parameter = declared(parameters, key);
-    if (!value.is_number() || parameter == nullptr || !is_written(pointer)) return;
-    const std::size_t lasts = stages_with(scene, pointer);
-    const auto same = [&](const std::string& other) {
-      const Description tried = Description::parse(other);
-      if (!parameter->allows(tried.get<double>())) throw Error("out of range");
-      std::vector<std::pair<Description*, Description>> before;
-      for (Materials& one : all)
-        if (Description* const target = one.stages < lasts ? value_in(one.scene) : nullptr) {
-          before.emplace_back(target, *target);
-          *target = tried;
-        }
-      const bool is_same = numbers() == now;
-      for (const auto& [target, old] : before) *target = old;
-      return is_same;
+  /// A part of the description: a material, or an interface of two.
+  struct Part {
+    std::string section, name, a, b;
+  };
+  const auto declare = [](const Part& part, ContactLaw& law, Parameters& parameters) {
+    if (part.b.empty()) law.declare_material(part.a, parameters);
+    else law.declare_interface(part.a, part.b, parameters);
+  };
+  const auto values_in = [](const Part& part, Materials& one) -> Description* {
+    if (part.b.empty()) {
+      const auto found = one.materials.find(part.a);
+      return found == one.materials.end() ? nullptr : &found->second.values;
+    }
+    const auto found = std::ranges::find(one.interfaces, part.name, &InterfaceDescription::name);
+    return found == one.interfaces.end() ? nullptr : &found->values;
+  };
+  const auto law_of_start = start.contacts.make();
+  const auto inspect = [&](const Part& part, const Description& values) {
+    Parameters parameters;
+    declare(part, *law_of_start, parameters);
+    const auto numbers = [&] {
+      std::vector<double> found;
+      for (const Materials& one : all) add_contacts(one, part.a, part.b, found);
+      return found;
     };
-    if (changes_nothing(value, same))
-      unused.push_back(
-          {pointer,
-           "no contact depends on it: contacts use the value of the other material, of an interface, or none"});
+    std::optional<std::vector<double>> now;
+    for (const auto& [key, value] : values.items()) {
+      const std::string pointer = fmt::format("/{}/{}/{}", part.section, pointer_token(part.name), pointer_token(key));
+      const Parameter* const parameter = declared(parameters, key);
+      if (!value.is_number() || parameter == nullptr || !is_written(pointer)) continue;
+      if (!now) now = numbers();
+      const std::size_t lasts = stages_with(scene, pointer);
+      const auto set = [&, &key = key](const Materials& one, const Description& described, const Description& other) {
+        Description changed = described;
+        changed[key] = other;
+        Parameters own;
+        declare(part, *one.law, own);
+        assign(own, changed);
+      };
+      const auto same = [&, &key = key](const std::string& other) {
+        const Description tried = Description::parse(other);
+        if (!parameter->allows(tried.get<double>())) throw Error("out of range");
+        const auto set_all = [&](const Description* instead) {
+          for (Materials& one : all)
+            if (const Description* const described = one.stages < lasts ? values_in(part, one) : nullptr;
+                described != nullptr && described->contains(key))
+              set(one, *described, instead != nullptr ? *instead : described->at(key));
+        };
+        set_all(&tried);
+        const bool is_same = numbers() == *now;
+        set_all(nullptr);
+        return is_same;
+      };
+      if (changes_nothing(value, same))
+        unused.push_back(
+            {pointer,
+             "no contact depends on it: contacts use the value of the other material, of an interface, or none"});
+    }
   };
-  const auto in = [](Description& values, const std::string& key) {
-    const auto found = values.find(key);
-    return found == values.end() ? nullptr : &*found;
-  };
-  const auto law = start.contacts.make();
-  for (const auto& [name, material] : start.materials) {
-    Parameters parameters;
-    law->declare_material(name, parameters);
-    for (const auto& [key, value] : material.values.items())
-      inspect("materials", name, key, value, parameters, [&, &name = name, &key = key](SceneDescription& one) {
-        const auto found = one.materials.find(name);
-        return found == one.materials.end() ? nullptr : in(found->second.values, key);
-      });
-  }
-  for (const InterfaceDescription& interface : start.interfaces) {
-    Parameters parameters;
-    law->declare_interface(interface.a, interface.b, parameters);
-    for (const auto& [key, value] : interface.values.items())
-      inspect("interfaces", interface.name(), key, value, parameters, [&, &key = key](SceneDescription& one) {
-        InterfaceDescription* const found = one.find_interface(interface.name());
-        return found == nullptr ? nullptr : in(found->values, key);
-      });
-  }
+  for (const auto& [name, material] : start.materials) inspect({"materials", name, name, ""}, material.values);
+  for (const InterfaceDescription& one : start.interfaces)
+    inspect({"interfaces", one.name(), one.a, one.b}, one.values);
   return unused;
 }
 

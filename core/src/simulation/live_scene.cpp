@@ -45,7 +45,15 @@ bool LiveScene::advance_ramps(std::size_t increments) {
 
 bool LiveScene::set(const std::string& pointer, const Description& value) {
   if (value.is_number() && known_.contains(pointer) && set_in_place(pointer, value.get<double>())) return true;
-  current_.apply(change_of(now(), pointer, value));
+  const SettingsChange change = change_of(now(), pointer, value);
+  // Bodies and contacts keep indices of materials.
+  for (const auto& [name, material] : change.materials)
+    if (material && !now().materials.contains(name))
+      throw DescriptionError({{"set", 0, pointer,
+                               "found the material \"" + name +
+                                   "\", which is not defined; allowed are materials that are defined when the run "
+                                   "begins: add it to /materials of the description"}});
+  current_.apply(change);
   known_.insert(pointer);
   bound_ = nullptr;
   follow();
