@@ -371,6 +371,35 @@ TEST(Descriptions, AreRefusedForChannelsThatNoProbeHas) {
   }
 }
 
+TEST(Descriptions, AreRefusedForAveragesOverTooManyCells) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto done = [&](const std::string& does, const std::string& type, const std::vector<std::string>& more) {
+    std::vector<std::string> words{does, "two.json", "--set",
+                                   "/probes/cells={\"type\": \"" + type +
+                                       R"(", "every_steps": 50, "region_low": [0, 0, 0], "region_high": [1, 1, 1]})"};
+    for (const std::string& set : more) words.insert(words.end(), {"--set", set});
+    return grit_in(folder.path(), words);
+  };
+  for (const std::string type : {"stress", "void-ratio"}) {
+    for (const std::string does : {"check", "run"}) {
+      const auto outcome = done(does, type, {});
+      EXPECT_EQ(outcome.status, 2) << does << type;
+      EXPECT_THAT(outcome.err,
+                  AllOf(HasSubstr("--set: /probes/cells/cell_step: found averaging cells every 1 mean diameters of "
+                                  "0.002 m in a region of 1 x 1 x 1 m, whose edges divide it into up to 973.242 "
+                                  "million parts; allowed is up to 8 million: a cell_step of at least 5.1, a "
+                                  "depth_axis, or a smaller region\n"),
+                        HasSubstr("1 problem")))
+          << does << type;
+      EXPECT_FALSE(std::filesystem::exists(folder.path() / "results")) << does << type;
+    }
+    EXPECT_EQ(done("check", type, {"/probes/cells/cell_step=5.1"}).status, 0) << type;
+  }
+  EXPECT_EQ(done("check", "stress", {"/probes/cells/frames=false"}).status, 0) << "its channels need no cells";
+  EXPECT_EQ(done("check", "stress", {"/output/frames=null"}).status, 0);
+}
+
 TEST(Descriptions, AreRefusedForFieldsThatNoProbeHas) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);

@@ -131,6 +131,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     Observer observer(name, probe, components.probes.at(name), kernel.world());
     probes.push_back(observer.group());
     if (description.output.frames.never() || !observer.in_frames()) continue;
+    observer.check_fields(kernel.world());
     if (auto one = fields_of(observer, kernel.world())) fields.push_back(std::move(*one));
   }
   SingleChannels(probes).check(scene.document, description.output);  // as in a run

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "description/placed_error.hpp"
+#include "grit/toolkit/limited_fields.hpp"
 #include "kernel/group_view.hpp"
 #include "kernel/stopwatch.hpp"
 #include "plugins/component_archive.hpp"
@@ -30,6 +31,13 @@ class Observer {
         groups_(description.groups),
         schedule_(description.cadence),
         values_(prepared(world)) {}
+  /// Throws PlacedError if fields would be left out of a frame now.
+  void check_fields(const World& world) try {
+    if (const auto* limited = dynamic_cast<const LimitedFields*>(probe_.get())) limited->check_fields(seen(world));
+  } catch (const ParameterError& error) {
+    throw PlacedError(placed(error, {"probes", name_}));
+  }
+  const std::string& name() const { return name_; }
   ProbeGroup group() const { return {name_, probe_->channels()}; }
   bool watches(const std::string& stage) const {
     return description_->stages.empty() ||

@@ -35,7 +35,8 @@ void StageRunner::prepare() {
   std::vector<PlacedError::Fault> faults;
   for (const auto& [name, probe] : scene_.description->probes) {
     try {
-      observers_.emplace_back(name, probe, live_.components().probes.at(name), world_);
+      Observer& observer = observers_.emplace_back(name, probe, live_.components().probes.at(name), world_);
+      if (probe.frames && !scene_.description->output.frames.never()) observer.check_fields(world_);
     } catch (const PlacedError& error) {
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     }
@@ -241,7 +242,7 @@ void StageRunner::serialize(Archive& archive) {
   archive.part("probes", 1);
   archive(instant_.is_decided, instant_.may_end);
   archive(start_.time, start_.step, start_.discharged_fraction, frames_, last_frame_, contact_samples_, contact_sum_,
-          stepping_);
+          stepping_, left_out_);
   for (PhaseTime& phase : phases_) archive(phase.seconds);
   for (Observer& observer : observers_) observer.serialize(archive);
   archive.part("results", 1);
@@ -316,8 +317,20 @@ void StageRunner::frame() {
   const Stopwatch watch(phases_[1].seconds);
   std::vector<FieldGroup> fields;
   for (Observer& observer : observers_)
-    if (observer.in_frames() && observer.watches(world_.stage())) fields.push_back(observer.fields(world_));
+    if (observer.in_frames() && observer.watches(world_.stage())) {
+      note_fields(observer);
+      fields.push_back(observer.fields(world_));
+    }
   recorder_.frame(world_, fields);
+}
+
+void StageRunner::note_fields(Observer& observer) {
+  try {
+    observer.check_fields(world_);
+  } catch (const PlacedError& error) {
+    left_out_.try_emplace(observer.name(), "probe \"" + observer.name() + "\": averages are left out of frames from " +
+                                               number(world_.time()) + " s on: " + error.what());
+  }
 }
 
 std::string StageRunner::reached() const {
@@ -340,7 +353,10 @@ void StageRunner::finish(RunSummary& summary) {
   sample(true);
   if (!scene_.description->output.frames.never()) frame();
   fill(summary);
-  if (summary.status == "done") summary.warnings = kernel_.blocked_streams();
+  if (summary.status == "done") {
+    summary.warnings = kernel_.blocked_streams();
+    for (const auto& [probe, why] : left_out_) summary.warnings.push_back(why);
+  }
   recorder_.finish(world_, summary);
 }
 

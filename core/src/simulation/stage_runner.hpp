@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -103,6 +104,8 @@ class StageRunner {
   void observe(bool all);
   void sample(bool all);
   void frame();
+  /// Notes a probe that leaves out fields.
+  void note_fields(Observer& observer);
   /// State of the specimen in words.
   std::string reached() const;
 
@@ -123,6 +126,7 @@ class StageRunner {
   std::uint64_t last_frame_ = ~0ull, contact_samples_ = 0;
   double stepping_ = 0, contact_sum_ = 0;  // s; sum of contacts per body
   std::vector<PhaseTime> phases_;
+  std::map<std::string, std::string> left_out_;  // of frames, by probe: why
 };
 
 }  // namespace grit

@@ -67,7 +67,7 @@ std::array<double, 3> CoarseGraining::counts(const World& world) const {
   return count;
 }
 
-void CoarseGraining::prepare(const World& world) {
+void CoarseGraining::check_fields(const World& world) const {
   const auto count = counts(world);
   const double all = count[0] * count[1] * count[2];
   if (!(all <= most_points))

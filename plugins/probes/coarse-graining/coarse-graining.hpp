@@ -8,10 +8,11 @@
 
 #include "coarse_fields.hpp"
 #include "grit/probe.hpp"
+#include "grit/toolkit/limited_fields.hpp"
 
 namespace grit {
 
-class CoarseGraining final : public Probe {
+class CoarseGraining final : public Probe, public LimitedFields {
  public:
   double cutoff = 2, spacing = 1;  ///< mean diameters
   std::string slice = "none";
@@ -19,7 +20,8 @@ class CoarseGraining final : public Probe {
 
   void declare(Parameters& parameters) override;
   /// Throws ParameterError where the grid has too many points.
-  void prepare(const World& world) override;
+  void prepare(const World& world) override { check_fields(world); }
+  void check_fields(const World& world) const override;
   std::vector<Channel> channels() const override;
   void sample(const World& world, ChannelValues& values) override;
   std::vector<Field> fields(const World& world) override;

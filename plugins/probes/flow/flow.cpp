@@ -180,6 +180,10 @@ void FlowProbe::sample_pattern(const World& world, bool flows, ChannelValues& va
   values["flow_type"] = !flows ? 0 : std::isnan(transition) ? 1 : !all_the_way ? 2 : 3;
 }
 
+void FlowProbe::check_fields(const World& world) const {
+  if (pattern) pattern->check_cells(world, pattern->region(specimen_box(world)), "pattern/cell_step");
+}
+
 std::vector<Field> FlowProbe::fields(const World& world) {
   if (!pattern) return {};
   const Region box = pattern->region(specimen_box(world));

@@ -8,6 +8,7 @@
 
 #include "grit/probe.hpp"
 #include "grit/toolkit/averaging_cells.hpp"
+#include "grit/toolkit/limited_fields.hpp"
 
 namespace grit {
 
@@ -18,7 +19,7 @@ struct FlowPattern : Averaging {
   void declare(Parameters& parameters);
 };
 
-class FlowProbe : public Probe {
+class FlowProbe : public Probe, public LimitedFields {
  public:
   /// A range of places along the probe's axis.
   struct Outlet {
@@ -34,6 +35,7 @@ class FlowProbe : public Probe {
   std::vector<Channel> channels() const override;
   void sample(const World& world, ChannelValues& values) override;
   std::vector<Field> fields(const World& world) override;
+  void check_fields(const World& world) const override;
 
  private:
   void sample_pattern(const World& world, bool flows, ChannelValues& values) const;

@@ -162,10 +162,16 @@ void PackingProbe::sample(const World& world, ChannelValues& values) {
   for (int i = 0; i < 9; ++i) components[static_cast<std::size_t>(i)] = stress(i / 3, i % 3);
 }
 
-std::vector<Field> PackingProbe::fields(const World& world) {
+Averaging PackingProbe::averaging() const {
   Averaging averaging;
   averaging.cell_size = cell_size, averaging.cell_step = cell_step, averaging.depth_axis = depth_axis;
-  const AveragingCells cells = averaging.cells(world, specimen_box(world));
+  return averaging;
+}
+
+void PackingProbe::check_fields(const World& world) const { averaging().check_cells(world, specimen_box(world)); }
+
+std::vector<Field> PackingProbe::fields(const World& world) {
+  const AveragingCells cells = averaging().cells(world, specimen_box(world));
   std::vector<Field> fields = map_of(cells);
   Field ratio{"void_ratio", "1", "volume of voids over volume of solids in the cell; infinite without solids", 1, {}};
   Field touching{

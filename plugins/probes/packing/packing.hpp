@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "grit/probe.hpp"
+#include "grit/toolkit/averaging_cells.hpp"
+#include "grit/toolkit/limited_fields.hpp"
 
 namespace grit {
 
-class PackingProbe : public Probe {
+class PackingProbe : public Probe, public LimitedFields {
  public:
   std::optional<double> shear_rate;
   std::string driven_by, driven_axis;
@@ -23,9 +25,11 @@ class PackingProbe : public Probe {
   void sample(const World& world, ChannelValues& values) override;
   /// The averaging cells.
   std::vector<Field> fields(const World& world) override;
+  void check_fields(const World& world) const override;
 
  private:
   double shear_rate_of(const World& world) const;
+  Averaging averaging() const;
   std::optional<std::size_t> driving_wall_;
 };
 

@@ -137,6 +137,10 @@ void Stress::sample(const World& world, ChannelValues& values) {
   values["friction_angle"] = of.friction_angle;
 }
 
+void Stress::check_fields(const World& world) const {
+  averaging.check_cells(world, closed_box(averaging.region(world.specimen()), world));
+}
+
 std::vector<Field> Stress::fields(const World& world) {
   const AveragingCells cells = averaging.cells(world, closed_box(averaging.region(world.specimen()), world));
   std::vector<Field> fields = map_of(cells);

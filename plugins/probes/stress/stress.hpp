@@ -5,10 +5,11 @@
 
 #include "grit/probe.hpp"
 #include "grit/toolkit/averaging_cells.hpp"
+#include "grit/toolkit/limited_fields.hpp"
 
 namespace grit {
 
-class Stress final : public Probe {
+class Stress final : public Probe, public LimitedFields {
  public:
   Averaging averaging;
 
@@ -16,6 +17,7 @@ class Stress final : public Probe {
   std::vector<Channel> channels() const override;
   void sample(const World& world, ChannelValues& values) override;
   std::vector<Field> fields(const World& world) override;
+  void check_fields(const World& world) const override;
 };
 
 }  // namespace grit

@@ -108,6 +108,10 @@ void VoidRatio::sample(const World& world, ChannelValues& values) {
   values["void_ratio"] = of_slices.empty() ? std::numeric_limits<double>::infinity() : void_ratio(whole, box);
 }
 
+void VoidRatio::check_fields(const World& world) const {
+  averaging.check_cells(world, closed_box(averaging.region(world.envelope()), world));
+}
+
 std::vector<Field> VoidRatio::fields(const World& world) {
   const AveragingCells cells = averaging.cells(world, closed_box(averaging.region(world.envelope()), world));
   std::vector<Field> fields = map_of(cells);

@@ -5,17 +5,20 @@
 
 #include "grit/probe.hpp"
 #include "grit/toolkit/averaging_cells.hpp"
+#include "grit/toolkit/limited_fields.hpp"
 
 namespace grit {
 
-class VoidRatio final : public Probe {
+class VoidRatio final : public Probe, public LimitedFields {
  public:
   Averaging averaging;
 
   void declare(Parameters& parameters) override;
   std::vector<Channel> channels() const override;
+  void prepare(const World& world) override { check_fields(world); }  // samples average over the cells, too
   void sample(const World& world, ChannelValues& values) override;
   std::vector<Field> fields(const World& world) override;
+  void check_fields(const World& world) const override;
 };
 
 }  // namespace grit

@@ -9,9 +9,11 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "grit/error.hpp"
 #include "grit/probe.hpp"
 #include "grit/toolkit/specimen.hpp"
 
@@ -84,17 +86,22 @@ class AveragingCells {
   AveragingCells(const Cell& domain, const Region& region, const Vec3& size, const Vec3& step) : domain_(domain) {
     if (!(region.volume() > 0) || !std::isfinite(region.volume())) return;
     if (!(size.minCoeff() > 0 && step.minCoeff() > 0)) return;
-    double parts = 1;  // upper bound: each cell has two edges
-    for (int k = 0; k < 3; ++k) {
-      const double length = region.high[k] - region.low[k];
-      parts *= 1 + 2 * std::max(0.0, (length - std::min(size[k], length)) / step[k]);
-    }
-    if (!(parts <= most_parts)) return;
+    if (!(most_parts_of(region, size, step) <= most_parts)) return;
     axes_.reserve(3);
     for (int k = 0; k < 3; ++k) {
       axes_.emplace_back(region.low[k], region.high[k], size[k], step[k]);
       inner_.low[k] = axes_[axis(k)].edges().front(), inner_.high[k] = axes_[axis(k)].edges().back();
     }
+  }
+
+  /// Upper bound of the number of parts: each cell has two edges along an axis.
+  static double most_parts_of(const Region& region, const Vec3& size, const Vec3& step) {
+    double parts = 1;
+    for (int k = 0; k < 3; ++k) {
+      const double length = region.high[k] - region.low[k];
+      parts *= 1 + 2 * std::max(0.0, (length - std::min(size[k], length)) / step[k]);
+    }
+    return parts;
   }
 
   std::size_t parts() const { return axes_.empty() ? 0 : strips(0) * strips(1) * strips(2); }
@@ -295,12 +302,30 @@ class Averaging {
     box.low = region_low.value_or(box.low), box.high = region_high.value_or(box.high);
     return box;
   }
+  /// No cells if there would be too many; see check_cells().
   AveragingCells cells(const World& world, const Region& box) const {
+    return {world.cell(), box, size_of_cells(world), Vec3::Constant(cell_step * world.mean_diameter())};
+  }
+  /// Throws ParameterError, of the parameter at `key`, if there would be more parts than AveragingCells::most_parts.
+  void check_cells(const World& world, const Region& box, const std::string& key = "cell_step") const {
+    constexpr double most = AveragingCells::most_parts;
     const double diameter = world.mean_diameter();
-    Vec3 size = Vec3::Constant(cell_size * diameter);
-    // Without bodies there are no cells, not even along the depth.
-    if (!depth_axis.empty() && diameter > 0) size[depth_axis[0] - 'x'] = std::numeric_limits<double>::infinity();
-    return {world.cell(), box, size, Vec3::Constant(cell_step * diameter)};
+    if (!(diameter > 0) || !(box.volume() > 0) || !std::isfinite(box.volume())) return;
+    const auto parts = [&](double step) {
+      return AveragingCells::most_parts_of(box, size_of_cells(world), Vec3::Constant(step * diameter));
+    };
+    const double found = parts(cell_step);
+    if (found <= most) return;
+    double step = cell_step;
+    while (parts(step) > most) step *= 1.1;
+    std::ostringstream text, allowed;
+    const Vec3 lengths = box.high - box.low;
+    text << "averaging cells every " << cell_step << " mean diameters of " << diameter << " m in a region of "
+         << lengths[0] << " x " << lengths[1] << " x " << lengths[2] << " m, whose edges divide it into up to "
+         << 1e-6 * found << " million parts";
+    allowed << "up to " << 1e-6 * most << " million: a cell_step of at least " << std::ceil(10 * step) / 10
+            << (depth_axis.empty() ? ", a depth_axis" : "") << ", or a smaller region";
+    throw ParameterError({{key, text.str(), allowed.str()}});
   }
   AveragingCells profile(const World& world, const Region& box) const {
     Vec3 size = Vec3::Constant(std::numeric_limits<double>::infinity());
@@ -321,6 +346,13 @@ class Averaging {
  private:
   static constexpr const char* place_name = "position";
   int profile_axis() const { return along[0] - 'x'; }
+  Vec3 size_of_cells(const World& world) const {
+    const double diameter = world.mean_diameter();
+    Vec3 size = Vec3::Constant(cell_size * diameter);
+    // Without bodies there are no cells, not even along the depth.
+    if (!depth_axis.empty() && diameter > 0) size[depth_axis[0] - 'x'] = std::numeric_limits<double>::infinity();
+    return size;
+  }
 };
 
 /// Centre and size of cells, to draw a map: the first two fields of a probe's frames.
