@@ -273,6 +273,10 @@ TEST_F(Reports, HaveWhatCurvesAreComparedWith) {
   ASSERT_EQ(grit({"run", "two.json", "--set", "/output/references/measured=" + curve}).status, 0);
   EXPECT_THAT(text("results/two/report.html"),
               HasSubstr(R"("references":[{"name":"measured","of":"packing/mean_stress")"));
+  const auto json = nlohmann::json::parse(text("results/two/run.json"));
+  EXPECT_EQ(json.at("references").at("measured").dump(), R"({"x":[0.0,0.1],"y":[0.0,0.5]})");
+  std::filesystem::remove(folder / "measured.csv");
+  EXPECT_EQ(grit({"report", "results/two"}).err, "") << "the run has kept the curve";
 
   const auto refused = [&](const std::string& reference) {
     return grit({"run", "two.json", "--out", "refused", "--set", "/output/references/it=" + reference});

@@ -218,3 +218,28 @@ TEST(Document, SetRefusesWhatItCannotDo) {
   EXPECT_THAT(problems_of(document, "/b={\"x\": 1, \"x\": 2}"), HasSubstr("--set:1: /x: the key \"x\" appears twice"));
   EXPECT_EQ(document.json(), Description::parse(R"({"a": 1, "l": [1]})"));
 }
+
+TEST(Document, IsNotNestedDeeplyNorHasEndlessKeys) {
+  const Folder folder;
+  const auto nested = [](std::size_t levels) {
+    return R"({"a": )" + std::string(levels - 1, '[') + std::string(levels - 1, ']') + "}";
+  };
+  EXPECT_EQ(problems_of(folder.write("a.json", nested(100))), "");
+  const std::string levels =
+      "found lists and objects inside each other at more than 100 levels; allowed is up to 100 levels";
+  EXPECT_THAT(problems_of(folder.write("a.json", "{\n" + nested(101).substr(1))),
+              testing::AllOf(HasSubstr("a.json:2: /a/0/0/"), HasSubstr("…: " + levels)));
+  EXPECT_THAT(problems_of(folder.write("a.json", std::string(50'000, '['))), HasSubstr(levels)) << "not complete";
+  EXPECT_THAT(problems_of(folder.write("a.json", R"({"//": )" + std::string(50'000, '['))), HasSubstr(levels))
+      << "in a comment";
+  std::string objects;
+  for (int i = 0; i < 8000; ++i) objects += R"({"x":)";
+  EXPECT_THAT(problems_of(folder.write("a.json", objects)), HasSubstr(levels));
+  EXPECT_THAT(problems_of(folder.write("a.json", "{\"" + std::string(2001, 'k') + "\": [1]}")),
+              HasSubstr("found keys of more than 2000 characters in all; allowed is shorter keys, or fewer levels"));
+  Document document;
+  EXPECT_THAT(problems_of(document, "/a=" + nested(101)), HasSubstr("--set:1: /a/0/0/"));
+  EXPECT_THAT(problems_of(document, "/a=" + nested(101)), HasSubstr(levels));
+  EXPECT_EQ(problems_of(document, "/a=[[1"), "") << "a text";
+  EXPECT_EQ(document.json().at("a"), "[[1");
+}

@@ -9,6 +9,7 @@
 
 #include "output/svg_elements.hpp"
 #include "report/curve_pictures.hpp"
+#include "report/references.hpp"
 #include "report/report_page.hpp"
 #include "results.hpp"
 
@@ -51,15 +52,15 @@ std::vector<double> numbers_in(const std::string& text) {
 
 TEST(CurvePictures, ShowTheReferencesOfTheDescription) {
   const Folder folder;
-  std::ofstream(folder / "measured.csv") << "u,ratio\n0,0\n0.002,2\n";
   write_test(folder / "run", 1,
              {{"the peak", {{"of", "test/ratio"}, {"value", 3}}},
               {"measured",
                {{"of", "test/ratio"},
                 {"against", "test/u"},
-                {"curve", {{"file", (folder / "measured.csv").string()}, {"x", "u"}, {"y", "ratio"}}}}},
+                {"curve", {{"file", (folder / "run/measured.csv").string()}, {"x", "u"}, {"y", "ratio"}}}}},
               {"of another curve", {{"of", "test/other"}, {"value", 1}}},
               {"lost", {{"of", "test/ratio"}, {"curve", {{"file", "nowhere.csv"}, {"x", "u"}, {"y", "ratio"}}}}}});
+  std::ofstream(folder / "run/measured.csv") << "u,ratio\n0,0\n0.002,2\n";
   RunResults run = read_results(folder / "run");
   const auto picture = curves_picture(std::span(&run, 1));
   ASSERT_TRUE(picture.has_value());
@@ -84,6 +85,25 @@ TEST(CurvePictures, ShowTheReferencesOfTheDescription) {
   EXPECT_TRUE(level);
   EXPECT_TRUE(measured);
   EXPECT_THAT(run.problems, ElementsAre(HasSubstr("reference lost: nowhere.csv: cannot be read")));
+}
+
+/// The folder may come from a stranger, whose run.json names files of the reader.
+TEST(CurvePictures, ReadNoFilesBesideTheFolder) {
+  const Folder folder;
+  std::ofstream(folder / "private.csv") << "u,ratio\n0,0\n0.002,2\n";
+  const Description curve = {{"file", (folder / "private.csv").string()}, {"x", "u"}, {"y", "ratio"}};
+  write_test(folder / "run", 1, {{"theirs", {{"of", "test/ratio"}, {"against", "test/u"}, {"curve", curve}}}});
+  RunResults run = read_results(folder / "run");
+  EXPECT_TRUE(references_of(run).empty());
+  EXPECT_THAT(run.problems, ElementsAre(HasSubstr("reference theirs: " + (folder / "private.csv").string() +
+                                                  ": cannot be read, as it is not in ")));
+  std::filesystem::create_symlink(folder / "private.csv", folder / "run/link.csv");
+  run.json["description"]["output"]["references"]["theirs"]["curve"]["file"] = (folder / "run/link.csv").string();
+  EXPECT_TRUE(references_of(run).empty()) << "a link";
+  run.json["references"]["theirs"] = {{"x", {0, 1}}, {"y", {5, 6}}};
+  const auto kept = references_of(run);
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_THAT(kept[0].y, ElementsAre(5, 6)) << "which the run has kept";
 }
 
 TEST(CurvePictures, ShowSeveralRuns) {

@@ -176,9 +176,10 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     if (!quiet) std::cerr << line << std::endl;
   };
 
-  check_references(description.output);
+  Description references = check_references(description.output);
   say(description.title.empty() ? job.file : job.file + ": " + description.title);
   RunFacts facts = facts_of(job, threads, command_line);
+  facts.references = std::move(references);
   std::optional<LastCheckpoint> last;
   if (job.existing == Existing::resume) {
     const auto before = read_run_json(folder);

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "grit/toolkit/text_file.hpp"
@@ -153,9 +152,9 @@ Defect other_format(std::string_view bytes, std::string_view beginning) {
 }
 
 void read(const std::filesystem::path& path, std::vector<Stl::Facet>& facets) {
-  std::error_code error;
-  std::string bytes = read_bytes(path, error);
-  if (error) throw Defect{path.string() + ", which cannot be read: " + error.message(), "the path of an STL file"};
+  std::string fault;
+  std::string bytes = read_bytes(path, fault);
+  if (!fault.empty()) throw Defect{path.string() + ", which cannot be read: " + fault, "the path of an STL file"};
   if (bytes.empty()) throw Defect{"an empty file", "STL, ASCII or binary"};
   if (is_binary(bytes)) return read_binary(bytes, facets);
   if (is_utf16(bytes)) throw Defect{"UTF-16 text", "STL, ASCII or binary; save the file as UTF-8"};

@@ -1,15 +1,21 @@
 #include "grit/toolkit/text_file.hpp"
 
+#include <fcntl.h>
+#include <linux/magic.h>
 #include <spdlog/fmt/fmt.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <boost/locale/utf.hpp>
 #include <cerrno>
 #include <charconv>
 #include <cstdint>
-#include <fstream>
+#include <system_error>
 #include <utility>
 
+#include "format/resources.hpp"
 #include "grit/error.hpp"
 
 namespace grit {
@@ -39,6 +45,22 @@ bool has_decimal_comma(std::string_view word) {
   return parse_number(with_point).fault.empty();
 }
 
+struct OpenFile {
+  explicit OpenFile(int opened) : number(opened) {}
+  ~OpenFile() {
+    if (number >= 0) ::close(number);
+  }
+  OpenFile(const OpenFile&) = delete;
+  const int number;
+};
+
+/// Whether a file is a pipe between processes, as /dev/stdin is in "cat grains.txt | grit …". A named pipe is not: it
+/// may have no writer.
+bool is_pipe_of_process(int file) {
+  struct statfs about {};
+  return ::fstatfs(file, &about) == 0 && about.f_type == PIPEFS_MAGIC;
+}
+
 bool is_visible(boost::locale::utf::code_point code) {
   constexpr boost::locale::utf::code_point no_break_space = 0xa0, byte_order_mark = 0xfeff;
   return code >= ' ' && !(code >= 0x7f && code <= no_break_space) && code != byte_order_mark;
@@ -46,27 +68,42 @@ bool is_visible(boost::locale::utf::code_point code) {
 
 }  // namespace
 
-std::string read_bytes(const std::filesystem::path& path, std::error_code& error) {
-  error.clear();
-  const auto fail = [&](int reason) {
-    error = std::error_code(reason != 0 ? reason : EIO, std::generic_category());
+std::string read_bytes(const std::filesystem::path& path, std::string& fault) {
+  fault.clear();
+  const auto fail = [&](std::string why) {
+    fault = std::move(why);
     return std::string();
   };
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return fail(errno);
+  const auto of_system = [](int reason) { return std::generic_category().message(reason != 0 ? reason : EIO); };
+  // Without O_NONBLOCK a named pipe without a writer, or a device, could stop the program here.
+  const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  struct stat about {};
+  if (file.number < 0 || ::fstat(file.number, &about) != 0) return fail(of_system(errno));
+  if (S_ISDIR(about.st_mode)) return fail(of_system(EISDIR));
+  const bool piped = is_pipe_of_process(file.number);
+  if (!S_ISREG(about.st_mode) && !piped)
+    return fail(std::string("it is a ") + (S_ISFIFO(about.st_mode) ? "named pipe" : "device") +
+                "; allowed are regular files");
+  if (piped) ::fcntl(file.number, F_SETFL, 0);
+  const double available = available_memory(), size = static_cast<double>(about.st_size);
+  const auto too_large = [&](double found) {
+    return fail("it has " + std::string(piped ? "more than " : "") + bytes_text(found) + ", and " +
+                bytes_text(available) + " of memory are available");
+  };
+  if (size > available) return too_large(size);
   std::string bytes;
   constexpr std::size_t piece = 1 << 20;
-  std::error_code unknown;  // a pipe has no size
-  if (const auto size = std::filesystem::file_size(path, unknown); !unknown) bytes.reserve(size + piece);
-  do {
-    const std::size_t size = bytes.size();
-    bytes.resize(size + piece);
-    file.read(bytes.data() + size, piece);
-    bytes.resize(size + static_cast<std::size_t>(file.gcount()));
-  } while (file);
-  if (file.bad()) return fail(errno);
-  return bytes;
+  bytes.reserve(static_cast<std::size_t>(about.st_size) + piece);
+  for (;;) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + piece);
+    const ssize_t count = ::read(file.number, bytes.data() + before, piece);
+    const int reason = errno;
+    bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    if (count < 0 && reason != EINTR) return fail(of_system(reason));
+    if (count == 0) return bytes;
+    if (piped && 2 * static_cast<double>(bytes.size()) > available) return too_large(static_cast<double>(bytes.size()));
+  }
 }
 
 bool is_utf16(std::string_view bytes) { return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"); }
@@ -85,9 +122,9 @@ std::string plain_text(std::string bytes, const std::string& name) {
 }
 
 std::string read_text(const std::filesystem::path& path) {
-  std::error_code error;
-  std::string bytes = read_bytes(path, error);
-  if (error) throw FileError(path.string() + ": cannot be read: " + error.message());
+  std::string fault;
+  std::string bytes = read_bytes(path, fault);
+  if (!fault.empty()) throw FileError(path.string() + ": cannot be read: " + fault);
   return plain_text(std::move(bytes), path.string());
 }
 

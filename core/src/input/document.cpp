@@ -166,8 +166,12 @@ struct Document::Parser : nlohmann::json_sax<Description> {
   }
 
   std::vector<Problem> problems;
+  /// Whether the text was refused for its depth, so that it may be JSON.
+  bool is_too_deep() const { return too_deep_; }
 
  private:
+  // Pointers of all values are kept, and documents are copied by recursion.
+  static constexpr std::size_t most_levels = 100, longest_pointer = 2000;
   struct Open {
     Description* value;
     std::string pointer;
@@ -193,13 +197,37 @@ struct Document::Parser : nlohmann::json_sax<Description> {
     document_.origins_[pointer] = {source_, line, pointer};
     return target;
   }
+  /// Refuses a text that is nested too deeply: returns false, which ends the parser.
+  bool refuse_depth(const std::string& found, const std::string& allowed) {
+    constexpr std::size_t shown = 80;
+    const std::string at = open_.empty() ? "" : open_.back().pointer;
+    problems.push_back({source_->name, line(), visible_text(at.substr(0, shown)) + (at.size() > shown ? "…" : ""),
+                        fault_text(found, allowed)});
+    too_deep_ = true;
+    return false;
+  }
   bool value(Description v, int line) {
+    if (is_too_long()) return refuse_pointer();
     std::string pointer;
     put(std::move(v), line, pointer);
     comment_ = false;
     return true;
   }
+  /// Whether the pointer of the next value is too long.
+  bool is_too_long() const {
+    if (open_.empty()) return false;
+    const auto& [parent, pointer] = open_.back();
+    return pointer.size() + (parent->is_array() ? 0 : key_.size()) > longest_pointer;
+  }
+  bool refuse_pointer() {
+    return refuse_depth("keys of more than " + std::to_string(longest_pointer) + " characters in all",
+                        "shorter keys, or fewer levels");
+  }
   bool start(Description v) {
+    if (open_.size() + static_cast<std::size_t>(skipped_) >= most_levels)
+      return refuse_depth("lists and objects inside each other at more than " + std::to_string(most_levels) + " levels",
+                          "up to " + std::to_string(most_levels) + " levels");
+    if (is_too_long()) return refuse_pointer();
     std::string pointer;
     if (Description* target = put(std::move(v), line(), pointer)) open_.push_back({target, pointer});
     else ++skipped_;
@@ -219,6 +247,7 @@ struct Document::Parser : nlohmann::json_sax<Description> {
   std::string key_;
   bool comment_ = false;  // the next value belongs to a key "//"
   int skipped_ = 0;       // depth within a comment
+  bool too_deep_ = false;
 };
 
 Document::Document(Description json, const std::string& source_name) : json_(std::move(json)) {
@@ -304,7 +333,8 @@ void Document::set(const std::string& assignment) {
 
   Document value;
   Parser parser(value, source);
-  if (!parser.parse(text)) value.json_ = text;
+  const bool is_json = parser.parse(text);
+  if (!is_json && !parser.is_too_deep()) value.json_ = text;
   else if (!parser.problems.empty()) throw DescriptionError(std::move(parser.problems));
   if (value.json_.is_null()) {
     removed_.insert(pointer);

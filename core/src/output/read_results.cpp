@@ -5,8 +5,10 @@
 
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <thread>
 
+#include "format/json.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 #include "output/writing_mark.hpp"
 #include "storage/seal.hpp"
@@ -124,7 +126,7 @@ SampledChannel read_channel(const std::filesystem::path& folder, const std::stri
 std::optional<Description> read_run_json(const std::filesystem::path& folder) {
   std::ifstream file(folder / "run.json");
   if (!file) return std::nullopt;
-  Description json = Description::parse(file, nullptr, false);
+  Description json = parsed_json({std::istreambuf_iterator<char>(file), {}});
   if (!json.is_object()) return std::nullopt;
   return json;
 }

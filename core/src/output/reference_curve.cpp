@@ -1,6 +1,8 @@
 #include "output/reference_curve.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "description/placed_error.hpp"
@@ -8,6 +10,21 @@
 #include "grit/error.hpp"
 
 namespace grit {
+namespace {
+
+ReferencePoints thinned(ReferencePoints points) {
+  constexpr std::size_t most = 2000;
+  const std::size_t count = points.x.size();
+  if (count <= most) return points;
+  ReferencePoints some;
+  for (std::size_t i = 0; i < most; ++i) {
+    const std::size_t at = i * (count - 1) / (most - 1);
+    some.x.push_back(points.x[at]), some.y.push_back(points.y[at]);
+  }
+  return some;
+}
+
+}  // namespace
 
 ReferencePoints read_reference(const ReferenceCurve& curve) {
   const auto columns = read_columns(curve.file, {curve.x, curve.y});
@@ -21,15 +38,26 @@ ReferencePoints read_reference(const ReferenceCurve& curve) {
   return points;
 }
 
-void check_references(const OutputDescription& output) {
+Description check_references(const OutputDescription& output) {
+  Description all = Description::object();
   std::vector<PlacedError::Fault> faults;
   for (const auto& [name, reference] : output.references) try {
-      if (reference.curve) read_reference(*reference.curve);
+      if (!reference.curve) continue;
+      const ReferencePoints points = thinned(read_reference(*reference.curve));
+      all[name] = {{"x", points.x}, {"y", points.y}};
     } catch (const FileError& error) {
       faults.push_back(
           {{"output", "references", name, "curve", "file"}, missing_file_text(error, reference.curve->file)});
     }
   if (!faults.empty()) throw PlacedError(std::move(faults));
+  return all;
+}
+
+ReferencePoints kept_reference(const Description& kept) {
+  ReferencePoints points{kept.at("x").get<std::vector<double>>(), kept.at("y").get<std::vector<double>>()};
+  const std::size_t count = std::min(points.x.size(), points.y.size());
+  points.x.resize(count), points.y.resize(count);
+  return points;
 }
 
 }  // namespace grit

@@ -16,7 +16,11 @@ struct ReferencePoints {
 /// there are fewer than two such points.
 ReferencePoints read_reference(const ReferenceCurve& curve);
 
-/// Reads the reference curves of a description before its run. Throws PlacedError with every file at fault.
-void check_references(const OutputDescription& output);
+/// Reads the reference curves of a description before its run. Throws PlacedError with every file at fault. Returns
+/// {"x": […], "y": […]} by name, as run.json keeps them; of long curves up to 2000 points at even intervals.
+Description check_references(const OutputDescription& output);
+
+/// The points of a curve in a run.json. Throws Description::exception for anything else.
+ReferencePoints kept_reference(const Description& kept);
 
 }  // namespace grit

@@ -42,6 +42,8 @@ struct RunFacts {
   unsigned threads = 1;
   std::map<std::string, ClumpFacts> clumps;  ///< by name of the group
   DescriptionSource source = {};
+  /// Points of the reference curves, {"x": […], "y": […]} by name: a page needs no file beside the folder of results.
+  Description references = Description::object();
   std::vector<std::vector<std::string>> commands = {};  ///< command lines, of the start and of each resumption
 };
 

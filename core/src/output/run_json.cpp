@@ -84,6 +84,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
              {"written", facts.source.written},
              {"set", facts.source.sets},
              {"unexpanded", facts.source.unexpanded}}},
+           {"references", facts.references},
            {"description", facts.description}};
   for (const auto& [group, clump] : facts.clumps)
     json_["clumps"][group] = {{"spheres", clump.spheres},

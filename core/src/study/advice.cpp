@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <ranges>
 
+#include "format/json.hpp"
 #include "grit/description.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
+#include "grit/toolkit/text_file.hpp"
 
 namespace grit {
 namespace {
@@ -164,11 +165,11 @@ class Cheapest {
 }  // namespace
 
 EvaluatedStudy read_evaluated_study(const std::filesystem::path& file, const std::vector<std::string>& metrics) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file))
-    throw FileError(file.string() + ": cannot be read; give a study.json written by 'grit study'");
+  std::string fault;
+  const std::string text = read_bytes(file, fault);
+  if (!fault.empty()) throw FileError(file.string() + ": cannot be read; give a study.json written by 'grit study'");
   try {
-    return evaluated_study(file, Description::parse(stream), metrics);
+    return evaluated_study(file, parsed_json(text), metrics);
   } catch (const Description::exception&) {
     throw FileError(file.string() + ": is not a study.json; 'grit study' writes one");
   }

@@ -5,12 +5,13 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 namespace grit {
 
-/// The bytes of a file; the reason in `error` if it cannot be read.
-std::string read_bytes(const std::filesystem::path& path, std::error_code& error);
+/// The bytes of a file. If it cannot be read, `fault` says why, e.g. "No such file or directory". Files that a
+/// description names are read by this function only: a regular file, or what is piped into the program as /dev/stdin;
+/// no device, no named pipe, and nothing that is larger than the memory that is available.
+std::string read_bytes(const std::filesystem::path& path, std::string& fault);
 
 /// Whether bytes begin with a byte-order mark of UTF-16.
 bool is_utf16(std::string_view bytes);

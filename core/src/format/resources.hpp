@@ -1,0 +1,19 @@
+// What the machine has left for this process.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace grit {
+
+/// Memory that this process can still take without swapping [bytes]: what the machine has, and no more than its control
+/// groups and its limit of address space leave. Infinite if nothing is known.
+double available_memory();
+
+/// Space on the disk of a folder that may not exist yet [bytes]. Infinite if it is not known.
+double available_disk(const std::filesystem::path& folder);
+
+/// "3.4 GB" of 3.4e9 bytes.
+std::string bytes_text(double bytes);
+
+}  // namespace grit
