@@ -515,6 +515,44 @@ TEST(Descriptions, AreRefusedForTooManyMaterials) {
   EXPECT_THAT(outcome.err, HasSubstr("many.json:3: /materials: found 256 materials; allowed is 255 or fewer"));
 }
 
+TEST(Descriptions, AreRefusedForBodiesThatTheArithmeticCannotHold) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  folder.write("tiny.txt", "0 0 0 1\n3 0 0 1e-320\n");
+  const auto refused = [&](const std::vector<std::string>& sets, const std::string& problem) {
+    for (const std::string does : {"check", "run"}) {
+      std::vector<std::string> words{does, "two.json"};
+      for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+      const auto outcome = grit_in(folder.path(), words);
+      EXPECT_EQ(outcome.status, 2) << does << ' ' << sets.front();
+      EXPECT_THAT(outcome.err, AllOf(HasSubstr(problem), HasSubstr("1 problem"))) << does << ' ' << sets.front();
+      EXPECT_FALSE(std::filesystem::exists(folder.path() / "results")) << does << ' ' << sets.front();
+    }
+  };
+  const std::string first = "/bodies/grains/source/bodies/0/";
+  refused({first + "radius=1e-320"},
+          "/bodies/grains: found a radius of 1e-320 m; allowed is from 1e-15 to 1e+12 m; is the unit right?");
+  refused({first + "radius=1e200"}, "/bodies/grains: found a radius of 1e+200 m; allowed is from 1e-15 to 1e+12 m");
+  refused({first + "position=[1e308, 0, 0]"},
+          "/bodies/grains: found a body at (1e+308, 0, 0) m; allowed are positions up to 1e+15 m from the origin along "
+          "each axis; is the unit right?");
+  refused({first + "position=[0, 0, -1e16]"}, "found a body at (0, 0, -1e+16) m");
+  refused({"/materials/sand/density=1e-300"}, "/bodies/grains: found a body with a mass of 4.189e-309 kg");
+  refused({R"(/bodies/grains/source={"type": "file", "path": "tiny.txt"})"},
+          "/bodies/grains: found a radius of 1e-320 m");
+  const auto cloud = [](const std::string& smallest) {
+    return R"(/bodies/grains/source={"type": "cloud", "low": [0, 0, 0], "high": [1, 1, 1], "count": 9, "sizes":
+              {"type": "list", "diameters": [0.001, )" +
+           smallest + "]}}";
+  };
+  refused({cloud("1e-320")},
+          "/bodies/grains: cloud: found diameters from 1e-320 to 0.001 m; allowed are 2e-15 to 2e+12 m");
+  refused({R"(/bodies/poured={"type": "sphere", "material": "sand", "source": {"type": "stream", "number_rate": 100,
+              "region": {"type": "disc", "centre": [0, 0, 1], "radius": "1 cm"},
+              "sizes": {"type": "list", "diameters": [0.001, 1e-320]}}})"},
+          "/bodies/poured: found a radius of ");
+}
+
 TEST(Descriptions, ProbesAndWallsThatDoNotFitTheSceneAreLocated) {
   const OwnFolder folder;
   folder.write("base.json", two_grains);

@@ -62,6 +62,18 @@ TEST(Facts, ReportTheReliabilityOfARun) {
   EXPECT_FALSE(fact(facts, "largest overlap").doubtful);
 }
 
+TEST(Facts, ShowAnyStiffnessLevel) {
+  const Description json = {{"description", {{"materials", {{"a", {{"contact_modulus", 3e8}}}}}}}};
+  const auto level = [&](double stress) {
+    const auto facts = trust_facts(run_with(json, {{"mean_stress", {stress}}}), 1e-3);
+    const auto found = std::ranges::find(facts, "stiffness level", &Fact::name);
+    return found == facts.end() ? std::string("none") : found->value;
+  };
+  EXPECT_EQ(level(1e-3), "300\u202f000\u202f000\u202f000");
+  EXPECT_EQ(level(1e-200), "3e+208");
+  EXPECT_EQ(level(1e-305), "none") << "not finite";
+}
+
 TEST(Facts, ReportHowToAddAnEnergyBalance) {
   const Description json = {{"status", "done"}, {"description", {{"probes", Description::object()}}}};
   const Fact none = fact(trust_facts(run_with(json, {}), 0), "energy closure");

@@ -14,7 +14,9 @@
 
 #include "bodies/mesh_interior.hpp"
 #include "bodies/regions.hpp"
+#include "bodies/size_limits.hpp"
 #include "bodies/sizes.hpp"
+#include "format/number.hpp"
 #include "grit/error.hpp"
 
 namespace grit {
@@ -197,6 +199,10 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
   const auto wrapped = wrapped_axes("cloud", box, cell);
   if (diameters.empty()) return {};
   std::sort(diameters.begin(), diameters.end(), std::greater<>());
+  if (!(0.5 * diameters.back() >= least_body_radius && 0.5 * diameters.front() <= most_body_radius))
+    throw Error("cloud: found diameters from " + number(diameters.back()) + " to " + number(diameters.front()) +
+                " m; allowed are " + number(2 * least_body_radius) + " to " + number(2 * most_body_radius) +
+                " m; are the units right?");
   const Vec3 size = box.high - box.low;
   const std::string what = shape != nullptr ? shape->name : "box",
                     place = (shape != nullptr ? shape->name + " in the box " : "box ") + text(box);

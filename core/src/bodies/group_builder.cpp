@@ -1,12 +1,35 @@
 #include "bodies/group_builder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bodies/make_bodies.hpp"
+#include "bodies/size_limits.hpp"
 #include "format/narrow.hpp"
+#include "format/number.hpp"
+#include "grit/error.hpp"
 
 namespace grit {
+namespace {
+
+/// `radius`: of a clump that of its smallest sphere; `inertia`: its smallest moment.
+void check_body(const Vec3& centre, double radius, double mass, double inertia) {
+  const auto in_range = [](double value) { return value > 0 && std::isfinite(value) && std::isfinite(1 / value); };
+  if (!(centre.cwiseAbs().maxCoeff() <= most_coordinate))
+    throw Error("found a body at (" + number(centre.x()) + ", " + number(centre.y()) + ", " + number(centre.z()) +
+                ") m; allowed are positions up to " + number(most_coordinate) +
+                " m from the origin along each axis; is the unit right?");
+  if (!(radius >= least_body_radius && radius <= most_body_radius))
+    throw Error("found a radius of " + number(radius) + " m; allowed is from " + number(least_body_radius) + " to " +
+                number(most_body_radius) + " m; is the unit right?");
+  if (!in_range(mass) || !in_range(inertia))
+    throw Error(
+        "found a body with a mass of " + number(mass) + " kg and a moment of inertia of " + number(inertia) +
+        " kg m^2; allowed are numbers above 0 whose inverses are finite; is the density of its material right?");
+}
+
+}  // namespace
 
 GroupBuilder::GroupBuilder(const SceneDescription& scene, const BodiesDescription& group,
                            std::shared_ptr<const BodyKind> kind)
@@ -34,6 +57,7 @@ void GroupBuilder::add(Bodies& bodies, const Vec3& centre, double radius, const 
                        const Vec3& velocity, const Vec3& spin) const {
   const ClumpShape* const shape = kind_->clump();
   if (shape == nullptr) {
+    check_body(centre, radius, mass(radius), inertia(radius));
     bodies.add(centre, radius, mass(radius), inertia(radius), material_, velocity, spin);
     return;
   }
@@ -44,6 +68,8 @@ void GroupBuilder::add(Bodies& bodies, const Vec3& centre, double radius, const 
 
 void GroupBuilder::add_clump(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& orientation,
                              const Vec3& velocity, const Vec3& spin) const {
+  const Row& smallest = *std::ranges::min_element(kind_->clump()->spheres, {}, &Row::w);
+  check_body(centre, radius * smallest.w, mass(radius), clump_inertia(radius).minCoeff());
   bodies.add_clump(*kind_->clump(), centre, radius, mass(radius), clump_inertia(radius), orientation, material_,
                    velocity, spin);
 }

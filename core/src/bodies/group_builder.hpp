@@ -17,6 +17,7 @@ class GroupBuilder {
 
   /// Mass of a body [kg]; `radius`: of a clump that of the enclosing sphere [m].
   double mass(double radius) const { return density_ * kind_->volume(inert(radius)); }
+  /// Throws Error for a position, radius or mass that the arithmetic cannot hold.
   void add(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
            const Vec3& spin) const;
   /// Adds a clump by its centre of mass and the orientation of its principal axes.

@@ -256,8 +256,10 @@ Bodies smallest_bodies(const SceneDescription& scene, const Components& componen
     const BodiesDescription& group = scene.bodies.at(name);
     const GroupBuilder builder(scene, group, components.body_kinds.at(name));
     const double radius = read_at_start(name, group, [&] { return smallest_radius(group, builder.shape_diameter()); });
-    if (std::isfinite(radius))
+    if (!std::isfinite(radius)) continue;
+    for_group(name, [&] {
       builder.add(bodies, Vec3::Zero(), radius, Eigen::Quaterniond::Identity(), Vec3::Zero(), Vec3::Zero());
+    });
   }
   bodies.finish({});
   return bodies;

@@ -17,6 +17,7 @@ std::string written_time(double seconds) {
 }
 
 std::string duration_text(double seconds) {
+  if (std::isnan(seconds)) return "unknown";
   const auto whole = static_cast<long>(std::lround(std::min(seconds, 1e9)));
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);

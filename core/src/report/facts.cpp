@@ -56,7 +56,8 @@ std::optional<double> largest(const RunResults& run, const std::string& channel)
 
 /// "758", "45 800": the precision of large ratios.
 std::string three_digits(double value) {
-  if (value < 1000) return fmt::format("{:.3g}", value);
+  constexpr double many = 1e15;
+  if (value < 1000 || !(value < many)) return fmt::format("{:.3g}", value);
   const double step = std::pow(10, std::floor(std::log10(value)) - 2);
   return count_text(step * std::round(value / step));
 }
@@ -148,7 +149,7 @@ std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter) {
                      "largest of the last stage; quasi-static below 0.001", *inertial > 1e-3 * 1.005 && !flows});
   const auto modulus = least_modulus(run);
   const auto stress = largest(run, "mean_stress");
-  if (modulus && stress && *stress > 0)
+  if (modulus && stress && *stress > 0 && std::isfinite(*modulus / *stress))
     facts.push_back({"stiffness level", three_digits(*modulus / *stress),
                      "contact modulus over the largest mean stress of the last stage", false});
   if (const auto overlap = largest(run, "largest_overlap"); overlap && mean_diameter > 0)
