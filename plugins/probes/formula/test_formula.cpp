@@ -180,6 +180,13 @@ TEST(Formula, NeitherAssignsNorLists) {
               HasSubstr("found \"time, step\": \",\" at character 5; allowed is an expression with one result"));
 }
 
+TEST(Formula, KnowsWallsOfAnyName) {
+  WatchedWorld world = shear_box();
+  world.wall[0].name = "left.upper+1";
+  EXPECT_DOUBLE_EQ(value_of("left_upper_1_force_x", world), -120);
+  EXPECT_DOUBLE_EQ(value_of("top_area", world), 4e-4) << "which does not depend on the names of others";
+}
+
 TEST(Formula, RefusesNamesThatMeanTwoThings) {
   WatchedWorld world = shear_box();
   world.wall.push_back(world.wall[0]);

@@ -12,10 +12,11 @@
 
 namespace grit {
 
-/// Prefix of the channels and variables of a wall: '-' becomes '_', and a name that begins with a digit gets "wall_" in
-/// front.
+/// Prefix of the channels and variables of a wall: '-', '.' and '+' become '_', and a name that begins with a digit
+/// gets "wall_" in front.
 inline std::string wall_stem(std::string name) {
-  std::replace(name.begin(), name.end(), '-', '_');
+  const auto is_other = [](unsigned char c) { return std::isalnum(c) == 0 && c != '_'; };
+  std::replace_if(name.begin(), name.end(), is_other, '_');
   const bool digit = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) != 0;
   return digit ? "wall_" + name : name;
 }
