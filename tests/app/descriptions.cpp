@@ -515,6 +515,53 @@ TEST(Descriptions, AreRefusedForTooManyMaterials) {
   EXPECT_THAT(outcome.err, HasSubstr("many.json:3: /materials: found 256 materials; allowed is 255 or fewer"));
 }
 
+/// Before memory is taken or anything is written, by `check` too.
+TEST(Descriptions, AreRefusedForMoreThanMemoryOrDiskHold) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto refused = [&](const std::vector<std::string>& sets, const std::string& problem) {
+    for (const std::string does : {"check", "run"}) {
+      std::vector<std::string> words{does, "two.json"};
+      for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+      const auto outcome = grit_in(folder.path(), words);
+      EXPECT_EQ(outcome.status, 2) << does << ' ' << sets.front();
+      EXPECT_THAT(outcome.err, AllOf(HasSubstr(problem),
+                                     HasSubstr(" available: use fewer bodies, or a machine with "
+                                               "more memory"),
+                                     HasSubstr("1 problem")))
+          << does << ' ' << sets.front();
+      EXPECT_FALSE(std::filesystem::exists(folder.path() / "results")) << does << ' ' << sets.front();
+    }
+  };
+  const std::string cloud = R"(/bodies/grains/source={"type": "cloud", "low": [0, 0, 0], "high": [9, 9, 9], "count":
+      4000000000, "sizes": {"type": "uniform", "smallest": "1 mm", "largest": "2 mm"}})";
+  const std::string many =
+      "--set: /bodies/grains/source: found 4000000000 bodies, which need about 2.8 TB of memory "
+      "with their contacts; allowed is up to ";
+  refused({cloud}, many);
+  refused({cloud, "/time_step/value=1e-7"}, many);
+  refused({R"(/bodies/grains/source={"type": "lattice", "kind": "fcc", "low": [0, 0, 0], "high": [1000, 1000, 1000],
+               "diameter": "1 mm"})"},
+          "found 1000000000000000 bodies, which need about 700 PB of memory");
+  refused({cloud, "/bodies/grains/type=clump", R"(/bodies/grains/shape={"type": "rod", "count": 3, "spacing": 0.5})"},
+          "found 12000000000 bodies, which need about 8.4 TB of memory");
+  refused({cloud, "/bodies/grains/stage=part"}, many);
+
+  for (const std::string until : {R"({"type": "steps", "value": 10000000000000})", R"({"type": "time", "value": 1e9})"})
+    for (const std::string does : {"check", "run"}) {
+      const auto outcome =
+          grit_in(folder.path(), {does, "two.json", "--set", R"(/output/frames={"every_steps": 1})", "--set",
+                                  "/stages/0/until=" + until, "--set", "/stages/0/limit=1e10"});
+      EXPECT_EQ(outcome.status, 2) << does << until;
+      EXPECT_THAT(outcome.err,
+                  AllOf(HasSubstr("--set: /output/frames: found at least "), HasSubstr(" frames of 8.18 kB each, "),
+                        HasSubstr("; allowed is as many as fit on the disk of the results, which has "),
+                        HasSubstr("1 problem")))
+          << does << until;
+      EXPECT_FALSE(std::filesystem::exists(folder.path() / "results")) << does << until;
+    }
+}
+
 TEST(Descriptions, AreRefusedForBodiesThatTheArithmeticCannotHold) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);
@@ -1149,7 +1196,8 @@ TEST(Check, ReportsTheRun) {
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("two.json: two grains"), HasSubstr("linear-rolling"), HasSubstr("time step: "),
                     HasSubstr("critical"), HasSubstr("memory: "), HasSubstr("bodies: 2"),
-                    HasSubstr("contacts of pairs at the start: 1"), HasSubstr("estimated time on 1 thread ")));
+                    HasSubstr("contacts of pairs at the start: 1"), HasSubstr("estimated time on 1 thread "),
+                    HasSubstr("frames: about 3 of "), HasSubstr(" are free on this disk\n")));
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
@@ -1161,7 +1209,8 @@ TEST(Check, ReportsTheNumberAndSizeOfFrames) {
     const auto at = out.find("\nframes: ");
     return at == std::string::npos ? "" : out.substr(at + 1, out.find('\n', at + 1) - at - 1);
   };
-  EXPECT_THAT(frames("/seed=1"), testing::MatchesRegex("frames: about 3 of [0-9.e+]+ kB, [0-9.e+]+ [kM]B in all"))
+  EXPECT_THAT(frames("/seed=1"),
+              testing::MatchesRegex("frames: about 3 of [0-9.]+ kB each, [0-9.]+ kB in all; .*B are free on this disk"))
       << "at the steps 0, 100 and 200, as a run writes them";
   EXPECT_THAT(frames("/output/frames={\"every_steps\": 1}"), HasSubstr("about 201 of "));
   EXPECT_THAT(frames("/stages/0/until={\"type\": \"unbalanced-force\", \"below\": 1e-3}"),

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "grit/toolkit/stl_file.hpp"
+#include "support/own_folder.hpp"
 #include "support/stl_file.hpp"
 
 namespace grit {
@@ -29,6 +30,18 @@ std::string refused(std::string_view bytes) {
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
   return text.replace(text.find(what), what.size(), by);
+}
+
+/// A sparse file, which takes no disk.
+TEST(Stl, IsNotReadIfTheMemoryCannotHoldIt) {
+  const OwnFolder folder;
+  const auto path = folder.write("huge.stl", "solid");
+  std::error_code error;
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 42, error);
+  if (error) GTEST_SKIP() << "no files of 4 TB here";
+  const Stl stl = read_stl(path);
+  ASSERT_EQ(stl.defects.size(), 1u);
+  EXPECT_THAT(stl.defects[0].found, HasSubstr("huge.stl, which cannot be read: it has 4.4 TB, and "));
 }
 
 TEST(Stl, ReadsText) {

@@ -298,6 +298,18 @@ TEST(Frames, HaveTheSizeThatCheckEstimates) {
   }
 }
 
+TEST(Frames, TakeAtLeastTheSizeByWhichRunsAreRefused) {
+  NumberedWorld world;
+  for (std::uint32_t i = 0; i < 2; ++i) world.add(i, {0.1 * i, 0, 0}, 0.05);
+  const Folder folder;
+  Frames(folder.path(), {}).write(world, {});
+  const auto bytes = static_cast<double>(std::filesystem::file_size(folder / "frames/000000.h5"));
+  EXPECT_LE(least_frame_bytes(2, {}), bytes);
+  EXPECT_GT(least_frame_bytes(2, {}), 0.5 * bytes);
+  EXPECT_EQ(least_frame_bytes(3, BodyState::rotation | BodyState::displacement) - least_frame_bytes(2, {}),
+            92 + 3 * 48);
+}
+
 TEST(Frames, FieldsOfAWallColourItsTriangles) {
   const Folder folder;
   const auto field = [](const char* name, std::size_t width, std::vector<double> values, const char* wall) {

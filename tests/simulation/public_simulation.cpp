@@ -67,6 +67,18 @@ TEST(PublicSimulation, EstimatesTheCostOfARun) {
   EXPECT_EQ(simulation.world().step(), 0u);
 }
 
+TEST(PublicSimulation, RefusesMoreBodiesThanMemoryHolds) {
+  Description d = drop();
+  d["bodies"]["grains"]["source"] = {{"type", "cloud"},
+                                     {"low", {0, 0, 0}},
+                                     {"high", {9, 9, 9}},
+                                     {"count", 4e9},
+                                     {"sizes", {{"type", "list"}, {"diameters", {1e-3}}}}};
+  EXPECT_THAT([&] { Simulation(d, options()); },
+              testing::ThrowsMessage<DescriptionError>(testing::HasSubstr(
+                  "/bodies/grains/source: found 4000000000 bodies, which need about 2.8 TB of memory")));
+}
+
 TEST(PublicSimulation, CallsObservers) {
   Simulation simulation(drop(), options());
   std::vector<std::uint64_t> by_steps, by_time, at_end;

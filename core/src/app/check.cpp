@@ -11,9 +11,12 @@
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
+#include "bodies/body_memory.hpp"
 #include "bodies/make_bodies.hpp"
 #include "description/current_scene.hpp"
 #include "format/duration.hpp"
+#include "format/number.hpp"
+#include "format/resources.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "input/scene.hpp"
@@ -32,10 +35,12 @@
 #include "lint/unused_scenario_parameters.hpp"
 #include "lint/unused_settings.hpp"
 #include "output/frame_size.hpp"
+#include "output/frame_space.hpp"
 #include "output/named_fields.hpp"
 #include "output/reference_curve.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"
+#include "simulation/expected_frames.hpp"
 #include "simulation/expected_stages.hpp"
 #include "simulation/first_instant.hpp"
 #include "simulation/live_scene.hpp"
@@ -59,45 +64,6 @@ constexpr double dense_step_fraction = 0.6;
 // Per body: a coordination number of 5, and some contacts with walls.
 constexpr double dense_contacts = 2.7;
 
-/// The number of frames of a cadence, and whether it is an upper bound; nothing if it does not follow from time.
-struct FrameCount {
-  double frames = 0;
-  bool at_most = false;
-};
-std::optional<FrameCount> frame_count(const Cadence& cadence, const std::vector<ExpectedStage>& stages, double dt) {
-  if (cadence.every_displacement || cadence.every_discharged) return std::nullopt;
-  FrameCount count{1};  // at the end
-  if (cadence.never()) return count;
-  for (const ExpectedStage& stage : stages) {
-    const double steps = stage.shown() / dt;
-    double frames = 0;
-    if (cadence.every_time) frames = std::max(frames, std::min(stage.shown() / *cadence.every_time, steps));
-    if (cadence.every_steps > 0) frames = std::max(frames, steps / static_cast<double>(cadence.every_steps));
-    count.frames += std::max(1.0, std::ceil(frames - 1e-9));  // the first at its start
-    count.at_most |= !stage.known && !stage.usual;
-  }
-  return count;
-}
-
-std::string size_text(double bytes) {
-  for (const auto& [unit, size] : {std::pair("TB", 1e12), {"GB", 1e9}, {"MB", 1e6}})
-    if (bytes >= size) return fmt::format("{:.3g} {}", bytes / size, unit);
-  return fmt::format("{:.3g} kB", bytes / 1e3);
-}
-
-/// What frames will take on the disk. `contacts`: of a dense packing, unless there are more.
-void print_frames(const SceneDescription& description, const World& world, const FrameContent& content,
-                  const std::vector<FieldGroup>& fields, const std::vector<ExpectedStage>& stages, double dt) {
-  const FramesDescription& frames = description.output.frames;
-  if (frames.never()) return;
-  const double each = frame_bytes(world, content, fields, frames.formats);
-  std::cout << "frames: ";
-  if (const auto count = frame_count(frames, stages, dt))
-    std::cout << (count->at_most ? "at most " : "about ") << fmt::format("{:.0f}", count->frames) << " of "
-              << size_text(each) << ", " << size_text(count->frames * each) << " in all\n";
-  else std::cout << size_text(each) << " each; their number depends on the run\n";
-}
-
 /// The fields of a probe in a frame at this instant; none if it cannot be sampled here.
 std::optional<FieldGroup> fields_of(Observer& observer, const World& world) try {
   NoRecorder none;
@@ -105,6 +71,36 @@ std::optional<FieldGroup> fields_of(Observer& observer, const World& world) try 
   return observer.fields(world);
 } catch (const Error&) {  // it samples in later stages
   return std::nullopt;
+}
+
+/// "0.21 h (12 min 36 s)".
+std::string hours_text(double seconds) {
+  constexpr double most = 1e12;
+  if (!(seconds < most)) return "more than can be told";
+  return fmt::format("{:.2f} h ({})", seconds / 3600, duration_text(seconds));
+}
+
+std::string steps_text(double steps) {
+  constexpr double most = 1e15;
+  return steps < most ? std::to_string(std::llround(steps)) : fmt::format("{:.3g}", steps);
+}
+
+/// What frames will take on the disk. Throws PlacedError if it cannot hold them.
+void print_frames(const SceneDescription& description, const Kernel& kernel, const FrameContent& content,
+                  const std::vector<FieldGroup>& fields, const std::vector<ExpectedStage>& stages, double dt) {
+  if (description.output.frames.never()) return;
+  const World& world = kernel.world();
+  const ExpectedFrames frames = expected_frames(description, stages, {dt, dt});
+  const double each = frame_bytes(world, content, fields, description.output.frames.formats);
+  const std::filesystem::path here = ".";
+  std::cout << "frames: ";
+  if (frames.shown)
+    std::cout << (frames.at_most ? "at most " : "about ") << steps_text(*frames.shown) << " of " << bytes_text(each)
+              << " each, " << bytes_text(*frames.shown * each) << " in all; ";
+  else std::cout << bytes_text(each) << " each, their number depends on the run; ";
+  std::cout << bytes_text(available_disk(here)) << " are free on this disk\n";
+  const auto bodies = static_cast<double>(world.positions().size());
+  check_disk(frames, least_frame_bytes(bodies, kernel.state().bodies.state), here);
 }
 
 void check_one(const std::string& file, const Scene& scene, const Options& options, const Registry& registry) {
@@ -181,13 +177,15 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   if (!wish.value && kernel.world().dt() < safe)
     std::cout << wish.steps_per_impact << " steps per impact of two bodies; ";
   std::cout << "updated as contacts change\n";
-  std::cout << "memory: " << std::lround(1e-6 * static_cast<double>(kernel.state().bytes())) + 1 << " MB now, about "
-            << std::lround(1e-6 * 700.0 * most_bodies) + 1 << " MB when dense\n";
+  const auto memory_now = static_cast<double>(kernel.state().bytes());
+  const double memory_dense = bytes_per_body * most_bodies, memory_free = memory_now + available_memory();
+  std::cout << "memory: " << bytes_text(memory_now) << " now, about " << bytes_text(memory_dense) << " when dense; "
+            << bytes_text(memory_free) << " are available\n";
   std::size_t triangles = 0;
   for (const auto& [name, geometry] : live.geometries().all()) triangles += geometry->triangles().size() / 3;
   const auto touching = static_cast<double>(kernel.world().contacts().size());
   print_frames(
-      description, kernel.world(),
+      description, kernel,
       {.bodies = most_bodies, .contacts = std::max(touching, dense_contacts * most_bodies), .triangles = triangles},
       fields, stages, dt);
   std::cout << "\nstages\n";
@@ -212,7 +210,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
               << (stage.known   ? ""
                   : stage.usual ? "usually "
                                 : "at most ")
-              << stage.shown() << " s, " << std::llround(stage.shown() / dt) << " steps";
+              << stage.shown() << " s, " << steps_text(stage.shown() / dt) << " steps";
     if (!stage.known)
       std::cout << " (ends by its condition" << (stage.usual ? fmt::format(", {:g} s at most", stage.most) : "") << ')';
     std::cout << '\n';
@@ -220,14 +218,14 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   const double per_second = planning_speed * std::min(threads, std::max(1u, std::thread::hardware_concurrency()));
   const auto cost = [&](double body_seconds) { return body_seconds / dt / per_second; };
   std::cout << "\nestimated time on " << threads << (threads == 1 ? " thread" : " threads") << " at "
-            << 1e-6 * per_second << " M particle-steps/s: " << std::fixed << std::setprecision(2) << cost(least) / 3600
-            << " h (" << duration_text(cost(least)) << ')'
+            << 1e-6 * per_second << " M particle-steps/s: " << hours_text(cost(least))
             << (all_known ? "" : " at least (the end of a stage without typical_time is unknown)");
-  if (most > least)
-    std::cout << ", at most " << cost(most) / 3600 << " h (" << duration_text(cost(most))
-              << ") if stages run to their limits";
-  std::cout << '\n' << std::defaultfloat << std::setprecision(6);
+  if (most > least) std::cout << ", at most " << hours_text(cost(most)) << " if stages run to their limits";
+  std::cout << '\n';
   std::vector<UnusedSetting> warnings;
+  if (memory_dense > memory_free)
+    warnings.push_back({"/bodies", "up to " + number(most_bodies) + " bodies need about " + bytes_text(memory_dense) +
+                                       " of memory, and " + bytes_text(memory_free) + " are available"});
   for (const auto& warning : {unmoved_bodies(scene, kernel.world()), endless_fall(scene), short_reach(kernel)})
     if (warning) warnings.push_back(*warning);
   std::ranges::move(tensile_targets(scene, live.geometries().all()), std::back_inserter(warnings));

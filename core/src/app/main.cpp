@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "app/command.hpp"
+#include "format/resources.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 #include "plugins/build_facts.hpp"
@@ -120,7 +121,10 @@ ExitStatus report(const std::function<ExitStatus()>& work) {
   } catch (const std::filesystem::filesystem_error& error) {
     return say(error.what(), ExitStatus::files);
   } catch (const std::bad_alloc&) {
-    return say("not enough memory for this scene; 'grit check' reports how much it needs", ExitStatus::files);
+    return say("out of memory: " + bytes_text(peak_memory()) + " were in use at most, and " +
+                   bytes_text(available_memory()) +
+                   " are available now; use fewer bodies, facets or averaging cells, or a machine with more memory",
+               ExitStatus::files);
   } catch (const std::exception& error) {
     return say(std::string("defect of grit or of a plugin; please report it: ") + error.what(), ExitStatus::defect);
   }

@@ -17,6 +17,7 @@
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "output/checkpoint.hpp"
+#include "output/frame_space.hpp"
 #include "output/own_files.hpp"
 #include "output/read_results.hpp"
 #include "output/reference_curve.hpp"
@@ -196,6 +197,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   const StateRequest state = picture_state(description);
   Prepared prepared = last ? job.opened->prepare_to_resume(state) : job.opened->prepare(state);
   if (!prepared.note.empty()) say(prepared.note);
+  if (!last) check_disk(scene, job.opened->live, prepared.bodies, folder);
   ResultsOptions written = results_of(job, std::move(facts), prepared.bodies);
   written.from_previous = last && !last->note.empty();
   catch_interrupts();  // placing bodies takes long, and leaves nothing that would have to be saved

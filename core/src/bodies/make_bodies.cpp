@@ -11,6 +11,7 @@
 #include <string>
 #include <typeinfo>
 
+#include "bodies/body_memory.hpp"
 #include "bodies/cloud.hpp"
 #include "bodies/group_builder.hpp"
 #include "bodies/lattice.hpp"
@@ -21,6 +22,7 @@
 #include "bodies/whole_count.hpp"
 #include "description/placed_error.hpp"
 #include "format/number.hpp"
+#include "format/resources.hpp"
 #include "grit/error.hpp"
 
 namespace grit {
@@ -62,7 +64,10 @@ void add_group(const BodiesDescription& group, const GroupBuilder& builder, cons
         make_cloud(std::get<CloudSource>(group.source.value()), cell, random, others, builder.shape_diameter()));
   }();
   const ClumpShape* const clump = builder.clump();
-  bodies.reserve(grains.size() * (clump != nullptr ? clump->spheres.size() : 1));
+  const std::size_t more = grains.size() * (clump != nullptr ? clump->spheres.size() : 1);
+  if (const std::string fault = memory_fault(static_cast<double>(more), available_memory()); !fault.empty())
+    throw Error(fault);  // of a file, of which the number was not known before
+  bodies.reserve(more);
   for (const PackedBody& g : grains) {
     const Eigen::Quaterniond turn = clump != nullptr ? any_orientation(random) : Eigen::Quaterniond::Identity();
     builder.add(bodies, xyz(g.sphere), g.sphere.w, turn, group.velocity + g.velocity, g.spin);
@@ -265,18 +270,25 @@ Bodies smallest_bodies(const SceneDescription& scene, const Components& componen
   return bodies;
 }
 
+std::optional<std::size_t> described_count(const SceneDescription& scene, const std::string& name,
+                                           const BodyKind& kind) {
+  const auto& source = scene.bodies.at(name).source.value();
+  const auto spheres = kind.clump() != nullptr ? kind.clump()->spheres.size() : 1;
+  if (const auto* placed = std::get_if<ListSource>(&source)) return spheres * placed->bodies.size();
+  if (const auto* cloud = std::get_if<CloudSource>(&source)) return spheres * static_cast<std::size_t>(cloud->count);
+  if (const auto* lattice = std::get_if<LatticeSource>(&source))
+    return whole_count(static_cast<double>(spheres) * count_of_lattice(*lattice, spanned_axes(*lattice, scene.domain)));
+  return std::nullopt;
+}
+
 std::size_t body_count(const SceneDescription& scene, const std::string& name,
                        const std::shared_ptr<const BodyKind>& kind) {
   const BodiesDescription& group = scene.bodies.at(name);
   if (group.is_from_sample()) return 0;
+  if (const auto count = described_count(scene, name, *kind)) return *count;
   const auto spheres = kind->clump() != nullptr ? kind->clump()->spheres.size() : 1;
   if (const auto* stream = std::get_if<StreamSource>(&group.source.value()))
     return spheres * expected_count(*stream, GroupBuilder(scene, group, kind));
-  if (const auto* placed = std::get_if<ListSource>(&group.source.value())) return spheres * placed->bodies.size();
-  if (const auto* cloud = std::get_if<CloudSource>(&group.source.value()))
-    return spheres * static_cast<std::size_t>(cloud->count);
-  if (const auto* lattice = std::get_if<LatticeSource>(&group.source.value()))
-    return whole_count(static_cast<double>(spheres) * count_of_lattice(*lattice, spanned_axes(*lattice, scene.domain)));
   const auto count = [&] { return read_bodies(std::get<FileSource>(group.source.value())).size(); };
   return spheres * read_at_start(name, group, count);
 }

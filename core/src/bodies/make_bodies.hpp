@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -52,6 +53,11 @@ Newcomers make_newcomers(const SceneDescription& scene, const Components& compon
 /// be read.
 Bodies smallest_bodies(const SceneDescription& scene, const Components& components,
                        const std::vector<std::string>& groups);
+
+/// Number of bodies of a group as far as the description gives it by itself: not of files, samples and streams. Each
+/// sphere of a clump is one.
+std::optional<std::size_t> described_count(const SceneDescription& scene, const std::string& group,
+                                           const BodyKind& kind);
 
 /// Number of bodies of a group; each sphere of a clump is one. For a stream those that its limits allow, or 0. Throws
 /// PlacedError if its file cannot be read.

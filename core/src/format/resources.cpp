@@ -79,6 +79,13 @@ double left_by_address_space() {
 
 double available_memory() { return std::min({left_by_machine(), left_by_groups(), left_by_address_space()}); }
 
+double peak_memory() {
+  constexpr double kibibyte = 1024;
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return kibibyte * static_cast<double>(usage.ru_maxrss);
+}
+
 double available_disk(const std::filesystem::path& folder) {
   std::error_code error;
   auto at = std::filesystem::absolute(folder, error).lexically_normal();

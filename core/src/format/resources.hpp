@@ -10,6 +10,9 @@ namespace grit {
 /// groups and its limit of address space leave. Infinite if nothing is known.
 double available_memory();
 
+/// Most memory that this process has had so far [bytes].
+double peak_memory();
+
 /// Space on the disk of a folder that may not exist yet [bytes]. Infinite if it is not known.
 double available_disk(const std::filesystem::path& folder);
 

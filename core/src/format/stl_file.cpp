@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <utility>
 
+#include "format/resources.hpp"
 #include "grit/toolkit/text_file.hpp"
 
 namespace grit {
@@ -151,15 +154,28 @@ Defect other_format(std::string_view bytes, std::string_view beginning) {
           "a complete STL file, ASCII or binary; export or copy the file again"};
 }
 
+/// Refuses more facets than indices or the memory can hold. A wall keeps edges and neighbours of a facet, too.
+void check_number(double facets) {
+  constexpr double bytes_per_facet = 550, most = 5e8;
+  const double available = available_memory();
+  const std::string found = std::to_string(static_cast<std::uint64_t>(facets)) + " facets";
+  if (facets > most) throw Defect{found, "up to 500 million; simplify the mesh"};
+  if (bytes_per_facet * facets > available)
+    throw Defect{found + ", which need about " + bytes_text(bytes_per_facet * facets) + " of memory",
+                 "as many as fit into the " + bytes_text(available) + " that are available; simplify the mesh"};
+}
+
 void read(const std::filesystem::path& path, std::vector<Stl::Facet>& facets) {
   std::string fault;
   std::string bytes = read_bytes(path, fault);
   if (!fault.empty()) throw Defect{path.string() + ", which cannot be read: " + fault, "the path of an STL file"};
   if (bytes.empty()) throw Defect{"an empty file", "STL, ASCII or binary"};
-  if (is_binary(bytes)) return read_binary(bytes, facets);
+  if (is_binary(bytes)) return check_number(count_of(bytes)), read_binary(bytes, facets);
   if (is_utf16(bytes)) throw Defect{"UTF-16 text", "STL, ASCII or binary; save the file as UTF-8"};
   const std::string beginning = plain_text(bytes.substr(0, 1024), path.string());
   if (!is_ascii(beginning)) throw other_format(bytes, beginning);
+  constexpr double characters_per_facet = 250;
+  check_number(std::floor(static_cast<double>(bytes.size()) / characters_per_facet));
   const std::string text = plain_text(std::move(bytes), path.string());
   Text(text, facets).read();
 }

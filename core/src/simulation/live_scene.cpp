@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "grit/error.hpp"
+#include "simulation/needed_memory.hpp"
 #include "simulation/preflight.hpp"
 
 namespace grit {
@@ -12,6 +13,9 @@ LiveScene::LiveScene(const Scene& scene)
   Faults faults(scene.document);
   for (const auto& [name, group] : now().bodies)
     components_.body_kinds[name] = prepared(group.kind, {"bodies", name}, faults.report_of(0));
+  Faults memory(scene.document);
+  check_memory(now(), components_, memory.report_of(0));
+  memory.throw_if_any();  // before it is taken
   geometries_.follow(now(), faults.report_of(0));
   engines_.follow(now());
   for (const auto& [name, probe] : now().probes) components_.probes[name] = probe.probe.make();
