@@ -39,7 +39,8 @@ inline constexpr bool plain_numbers<Clump> = true;
 /// Relation of a body to its clump.
 struct ClumpSphere {
   std::uint32_t clump = no_clump;
-  std::array<std::int8_t, 3> periods{};  ///< shift by periods relative to its clump
+  /// Shift by periods relative to its clump: few, as a clump has at most 64 spheres, each narrower than half a period.
+  std::array<std::int8_t, 3> periods{};
   Vec3 place = Vec3::Zero();             ///< position along the clump's axes from its centre [m]
 };
 

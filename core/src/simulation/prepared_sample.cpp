@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <system_error>
 
 #include "bodies/make_bodies.hpp"
 #include "description/placed_error.hpp"
@@ -22,7 +23,8 @@ std::filesystem::path file_of(const BeginDescription& begin) {
   const std::filesystem::path folder = begin.from;
   const bool at_end = begin.at == "end";
   auto file = folder / (at_end ? "final.h5" : "checkpoint.h5");
-  if (std::filesystem::exists(file)) return file;
+  std::error_code none;
+  if (std::filesystem::is_regular_file(file, none)) return file;
   if (!std::filesystem::is_directory(folder))
     throw PlacedError({"begin", "from"}, folder.string() + ": is not a folder; name the folder of results of a run");
   const bool frames = std::filesystem::exists(folder / "frames");

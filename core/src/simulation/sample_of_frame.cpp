@@ -30,7 +30,8 @@ std::vector<std::size_t> numbers_of_frames(const std::filesystem::path& folder) 
   std::vector<std::size_t> numbers;
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(folder, none))
-    if (const auto number = frame_number(entry.path().filename().string())) numbers.push_back(*number);
+    if (const auto number = frame_number(entry.path().filename().string()); number && entry.is_regular_file(none))
+      numbers.push_back(*number);
   std::ranges::sort(numbers);
   return numbers;
 }
