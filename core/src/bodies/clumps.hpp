@@ -41,7 +41,7 @@ struct ClumpSphere {
   std::uint32_t clump = no_clump;
   /// Shift by periods relative to its clump: few, as a clump has at most 64 spheres, each narrower than half a period.
   std::array<std::int8_t, 3> periods{};
-  Vec3 place = Vec3::Zero();             ///< position along the clump's axes from its centre [m]
+  Vec3 place = Vec3::Zero();  ///< position along the clump's axes from its centre [m]
 };
 
 template <>
