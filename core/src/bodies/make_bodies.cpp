@@ -189,12 +189,7 @@ StateRequest requested_state(const Components& components, StateRequest also) {
 }
 
 std::vector<std::string> material_names(const SceneDescription& scene) {
-  std::set<std::string> all;
-  for (const auto& [name, material] : scene.materials) all.insert(name);
-  for (const StageDescription& stage : scene.stages)
-    if (const auto added = stage.change.find("materials"); added != stage.change.end() && added->is_object())
-      for (const auto& [name, material] : added->items()) all.insert(name);
-  std::vector<std::string> names(all.begin(), all.end());
+  std::vector<std::string> names = scene.names_of_materials();
   std::stable_partition(names.begin(), names.end(),
                         [of_bodies = of_bodies(scene)](const std::string& name) { return of_bodies.contains(name); });
   return names;

@@ -1155,6 +1155,15 @@ bool SceneDescription::has_unit(const std::string& section, const std::string& n
   return std::ranges::find(names, name) != names.end();
 }
 
+std::vector<std::string> SceneDescription::names_of_materials() const {
+  std::set<std::string> all;
+  for (const auto& [name, _] : materials) all.insert(name);
+  for (const StageDescription& stage : stages)
+    if (const auto added = stage.change.find("materials"); added != stage.change.end() && added->is_object())
+      for (const auto& [name, _] : added->items()) all.insert(name);
+  return {all.begin(), all.end()};
+}
+
 InterfaceDescription* SceneDescription::find_interface(const std::string& name) {
   const auto found =
       std::ranges::find_if(interfaces, [&](const InterfaceDescription& one) { return one.is_named(name); });

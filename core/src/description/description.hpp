@@ -608,6 +608,8 @@ struct SceneDescription {
   static bool has_names(const std::string& section);
   /// Reports inconsistencies between sections that a stage may change.
   void check_together(const Complain& complain) const;
+  /// Names of all materials, also of those that stages add; ascending.
+  std::vector<std::string> names_of_materials() const;
   /// The interface of this name; null if there is none.
   InterfaceDescription* find_interface(const std::string& name);
 

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <thread>
 
-#include "format/json.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
+#include "input/parsed_json.hpp"
 #include "output/writing_mark.hpp"
 #include "storage/seal.hpp"
 #include "storage/trial.hpp"

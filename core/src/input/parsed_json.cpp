@@ -1,4 +1,4 @@
-#include "format/json.hpp"
+#include "input/parsed_json.hpp"
 
 namespace grit {
 

@@ -1,8 +1,8 @@
-#include "format/json.hpp"
+#include "input/parsed_json.hpp"
 
 #include <gtest/gtest.h>
 
-namespace grit::json_tests {
+namespace grit::parsed_json_tests {
 namespace {
 
 std::string nested(std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); }
@@ -21,4 +21,4 @@ TEST(Json, IsReadUpToAHundredLevels) {
 }
 
 }  // namespace
-}  // namespace grit::json_tests
+}  // namespace grit::parsed_json_tests
