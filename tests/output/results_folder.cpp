@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <boost/property_tree/xml_parser.hpp>
+#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -309,6 +310,15 @@ TEST(ResultsFolder, ChangesNothingIfItCannotBeResumed) {
   EXPECT_THAT(text_of(run.folder / "run/frames.xdmf"),
               AllOf(HasSubstr("frames/000001.h5:"), testing::Not(HasSubstr("frames/000000.h5:"))));
   EXPECT_FALSE(std::filesystem::exists(run.folder / "run/frames/000002.h5"));
+}
+
+TEST(ResultsFolder, RefusesMoreFramesThanSteps) {
+  KilledRun run;
+  const std::uint64_t frames = std::uint64_t{1} << 50;
+  std::memcpy(run.state.data() + 3 * sizeof frames, &frames, sizeof frames);  // after the samples of two probes
+  const auto before = run.files();
+  EXPECT_THAT(error_of<Error>([&] { run.resume(); }), HasSubstr("altered: there are more frames than steps"));
+  EXPECT_EQ(run.files(), before);
 }
 
 /// A run that is killed while it writes its last results resumes from there.

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "bodies/packing_file.hpp"
+#include "bodies/restored.hpp"
 #include "format/duration.hpp"
 #include "format/number.hpp"
 #include "format/symbols.hpp"
@@ -120,6 +121,7 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
   }
   const bool resumes = options_.existing == Existing::resume;
   if (resumes) {
+    expect_restored(resumed_.frames <= world.step() + 1, "there are more frames than steps");
     restore(probes);
     for (std::size_t i = 0; i < kept_.size() && i < resumed_.steps.size(); ++i)
       kept_[i].steps = resumed_.steps[i], kept_[i].values = resumed_.values[i];

@@ -56,11 +56,10 @@ void remove_checkpoints(const std::filesystem::path& folder);
 
 /// Writes at the start run.json and description.json; during the run series.h5, frames/, frames.xdmf, grains.pvd and
 /// walls.pvd for VTK, run.json, series.journal, checkpoint.h5 and the one before it, checkpoint-previous.h5; at the end
-/// packing.txt
-/// (`x y z radius` in m, by id, in full precision; not for a failed run), picture.svg, and run.json last, so that its
-/// status implies that the rest is complete. When the run is done, final.h5 has its last state and the checkpoints are
-/// removed, only then, as a run that is killed at its end resumes from them. All functions throw FileError for write
-/// errors.
+/// packing.txt (`x y z radius` in m, by id, in full precision; not for a failed run), picture.svg, and run.json last,
+/// so that its status implies that the rest is complete. When the run is done, final.h5 has its last state and the
+/// checkpoints are removed, only then, as a run that is killed at its end resumes from them. All functions throw
+/// FileError for write errors.
 class ResultsFolder final : public Recorder {
  public:
   /// Creates the folder. Throws FileError if that fails, if another run is writing to it, if it holds a run and
