@@ -1,5 +1,6 @@
 // Speed against accuracy: `study` runs a study, `advise` applies it.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <chrono>
@@ -475,6 +476,12 @@ TEST_F(Studies, TouchNoFileThatTheyDidNotWrite) {
     EXPECT_EQ(refused.status, 5) << name;
     EXPECT_THAT(refused.err, HasSubstr("results/study/" + name + ": "));
     EXPECT_EQ(text_of(folder / ("results/study/" + name)), "mine");
+    std::filesystem::remove_all(folder / "results/study");
+  }
+  for (const std::string name : {"study.json", "study.csv"}) {
+    std::filesystem::create_directories(folder / "results/study");
+    ASSERT_EQ(::mkfifo((folder / ("results/study/" + name)).c_str(), 0600), 0);
+    EXPECT_EQ(grit({"study", "study.json"}).status, 5) << "a named pipe, which may have no writer";
     std::filesystem::remove_all(folder / "results/study");
   }
 }

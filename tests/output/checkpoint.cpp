@@ -102,6 +102,8 @@ TEST_F(CheckpointFile, OfAnotherGritIsRefused) {
               AllOf(HasSubstr("checkpoint.h5: was written by another grit"), HasSubstr("/compiler: found ")));
   rewrite(facts_text(), 1);
   EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5: found format 1, allowed 5"));
+  rewrite(R"({"grit": {}, "plugins": {}, "description": )" + std::string(8000, '[') + std::string(8000, ']') + '}');
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("its facts are not JSON")) << "too deep to be copied";
   rewrite("{");
   EXPECT_THAT(refusal<FileError>(), HasSubstr("its facts are not JSON"));
 }

@@ -22,6 +22,7 @@
 #include "format/number.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
+#include "grit/toolkit/text_file.hpp"
 #include "input/places.hpp"
 #include "input/scene.hpp"
 #include "kernel/kernel.hpp"
@@ -36,6 +37,7 @@
 #include "simulation/live_scene.hpp"
 #include "simulation/prepared_sample.hpp"
 #include "storage/atomic_file.hpp"
+#include "storage/parsed_json.hpp"
 #include "study/batch.hpp"
 #include "study/study_page.hpp"
 #include "study/study_result.hpp"
@@ -319,8 +321,8 @@ void lock_folder(const std::filesystem::path& out, std::optional<FolderLock>& lo
 }
 
 bool is_own_json(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  const Description json = Description::parse(file, nullptr, false);
+  std::string fault;
+  const Description json = parsed_json(read_bytes(path, fault));
   return json.is_object() && json.contains("variants") && json.contains("cheapest");
 }
 
@@ -340,7 +342,7 @@ bool is_own_log(const std::filesystem::path& log) {
 /// Throws FileError if the study would replace a file that no study wrote.
 void refuse_foreign_files_of_study(const std::filesystem::path& out, const std::vector<Run>& runs) {
   const auto check = [](const std::filesystem::path& path, const auto& is_own) {
-    if (std::filesystem::exists(path) && !is_own(path))
+    if (std::filesystem::exists(path) && !(std::filesystem::is_regular_file(path) && is_own(path)))
       throw FileError(path.string() +
                       ": no study wrote this file: it would be lost; move it away, or choose another folder with "
                       "--out");

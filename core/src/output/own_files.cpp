@@ -7,12 +7,14 @@
 #include <string_view>
 
 #include "grit/error.hpp"
+#include "grit/toolkit/text_file.hpp"
 #include "output/checkpoint.hpp"
 #include "output/frame_exports.hpp"
 #include "output/read_results.hpp"
 #include "storage/atomic_file.hpp"
 #include "storage/frame_state.hpp"
 #include "storage/hdf5.hpp"
+#include "storage/parsed_json.hpp"
 
 namespace grit {
 namespace {
@@ -118,8 +120,8 @@ void refuse_edited_description(const fs::path& folder) {
   const auto path = folder / "description.json";
   const auto run = read_run_json(folder);
   if (!is_file(path) || !run || !run->contains("description")) return;
-  std::ifstream file(path);
-  if (Description::parse(file, nullptr, false) != run->at("description"))
+  std::string fault;  // then it is another text
+  if (parsed_json(read_bytes(path, fault)) != run->at("description"))
     refuse(path, "was changed since the run wrote it");
 }
 

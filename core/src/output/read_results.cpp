@@ -4,13 +4,12 @@
 #include <sys/stat.h>
 
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <thread>
 
 #include "grit/toolkit/did_you_mean.hpp"
-#include "input/parsed_json.hpp"
+#include "grit/toolkit/text_file.hpp"
 #include "output/writing_mark.hpp"
+#include "storage/parsed_json.hpp"
 #include "storage/seal.hpp"
 #include "storage/trial.hpp"
 
@@ -124,9 +123,8 @@ SampledChannel read_channel(const std::filesystem::path& folder, const std::stri
 }
 
 std::optional<Description> read_run_json(const std::filesystem::path& folder) {
-  std::ifstream file(folder / "run.json");
-  if (!file) return std::nullopt;
-  Description json = parsed_json({std::istreambuf_iterator<char>(file), {}});
+  std::string fault;
+  Description json = parsed_json(read_bytes(folder / "run.json", fault));
   if (!json.is_object()) return std::nullopt;
   return json;
 }

@@ -8,10 +8,12 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "grit/error.hpp"
 #include "storage/atomic_file.hpp"
+#include "storage/parsed_json.hpp"
 
 namespace grit {
 namespace {
@@ -97,7 +99,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
 void RunJson::begin(const World& world, bool resumed) {
   if (resumed) {
     std::ifstream file(path_);
-    const auto old = Description::parse(file, nullptr, false);
+    const Description old = parsed_json({std::istreambuf_iterator<char>(file), {}});
     json_["resumed"] = (old.is_object() ? old.value("resumed", 0) : 0) + 1;
     json_["resumed_at_step"] = world.step();
   }
@@ -110,7 +112,7 @@ void RunJson::serialize(Archive& archive) {
   double wall = wall_s(), cpu = cpu_s();
   archive(started, stages, wall, cpu);
   if (!archive.restoring()) return;
-  json_["started"] = started, json_["stages"] = Description::parse(stages);
+  json_["started"] = started, json_["stages"] = parsed_json(stages);
   if (!json_["stages"].is_array())
     throw Error("the saved state is damaged or was altered: its stages are no list; use another checkpoint");
   wall_before_ = wall, cpu_before_ = cpu;

@@ -8,6 +8,7 @@
 #include "grit/error.hpp"
 #include "kernel/stopwatch.hpp"
 #include "run/falling.hpp"
+#include "storage/parsed_json.hpp"
 
 namespace grit {
 namespace {
@@ -88,7 +89,8 @@ void StageRunner::restore_kernel(Archive& archive) {
       throw Error("a checkpoint with a value that was set in stage " + std::to_string(set.stage + 1) +
                   ", which it has not reached; it is damaged or was altered");
     live_.go_to(set.stage, set.increments);
-    const auto value = Description::parse(set.value);
+    const Description value = parsed_json(set.value);
+    if (value.is_discarded()) refuse_texts();
     if (set.in_place) live_.restore(set.pointer, value.get<double>());
     else live_.set(set.pointer, value);
   }

@@ -8,6 +8,7 @@
 #include "grit/error.hpp"
 #include "storage/atomic_file.hpp"
 #include "storage/hdf5.hpp"
+#include "storage/parsed_json.hpp"
 #include "storage/seal.hpp"
 
 namespace grit {
@@ -45,7 +46,7 @@ void write_state(const std::filesystem::path& path, const StateFile& state, cons
   sync_folder(path.parent_path());
 }
 
-StateFile read_state(const std::filesystem::path& path) try {
+StateFile read_state(const std::filesystem::path& path) {
   const bool sealed = is_sealed(path);
   const hdf5::File file(path, hdf5::Mode::read_whole);
   if (!sealed) throw FileError(path.string() + ": is not complete: it lacks the checksum at its end");
@@ -54,15 +55,13 @@ StateFile read_state(const std::filesystem::path& path) try {
   StateFile state;
   state.checkpoint = {file.text("stage"), file.number<double>("time"), file.number<std::uint64_t>("step"), {}};
   const auto text = file.dataset("facts").read_bytes();
-  state.facts = Description::parse(reinterpret_cast<const char*>(text.data()),
-                                   reinterpret_cast<const char*>(text.data()) + text.size());
+  state.facts = parsed_json({reinterpret_cast<const char*>(text.data()), text.size()});
+  if (state.facts.is_discarded()) throw FileError(path.string() + ": its facts are not JSON; the file is damaged");
   for (const char* key : {"grit", "plugins", "description"})
     if (!state.facts.is_object() || !state.facts.contains(key))
       throw FileError(path.string() + ": lacks \"" + key + '"');
   state.checkpoint.state = file.dataset("state").read_bytes();
   return state;
-} catch (const Description::exception&) {
-  throw FileError(path.string() + ": its facts are not JSON; the file is damaged");
 }
 
 }  // namespace grit

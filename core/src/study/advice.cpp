@@ -11,7 +11,7 @@
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 #include "grit/toolkit/text_file.hpp"
-#include "input/parsed_json.hpp"
+#include "storage/parsed_json.hpp"
 
 namespace grit {
 namespace {

@@ -1,4 +1,4 @@
-#include "input/parsed_json.hpp"
+#include "storage/parsed_json.hpp"
 
 #include <gtest/gtest.h>
 
