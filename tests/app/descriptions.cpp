@@ -230,15 +230,15 @@ TEST(Descriptions, CheckReportsSettingsWithoutEffect) {
   EXPECT_THAT(check({}), testing::Not(HasSubstr("without effect")));
   const auto idle =
       check({R"(/engines/damping={"type": "local-damping", "coefficient": 0})", R"(/engines/hold={"type": "hold"})",
-             "/seed=7", "/bodies/grains/density_scaling/below=2 mm", "/bodies/grains/overlap=0.02",
-             "/time_step/value=1e-9", "/time_step/safety=0.5", "/materials/steel={}", "/materials/steel/density=7800",
-             R"(/probes/idle={"type": "packing"})",
+             "/seed=7", R"(/engines/scaling={"type": "density-scaling", "below": "2 mm"})",
+             "/bodies/grains/overlap=0.02", "/time_step/value=1e-9", "/time_step/safety=0.5", "/materials/steel={}",
+             "/materials/steel/density=7800", R"(/probes/idle={"type": "packing"})",
              R"(/output/picture={"x": "packing/time", "y": ["packing/kinetic_energy"]})"});
   EXPECT_THAT(
       idle,
       AllOf(HasSubstr("\nwithout effect\n"), HasSubstr("  /engines/damping: it has no effect with these values\n"),
             HasSubstr("  /output/picture/color: rotations are held"), HasSubstr("  /seed: nothing is random"),
-            HasSubstr("  /bodies/grains/density_scaling/below: no body is smaller\n"),
+            HasSubstr("  /engines/scaling/below: no body is smaller\n"),
             HasSubstr("  /bodies/grains/overlap: it applies to bodies inserted by a stage"),
             HasSubstr("  /time_step/safety: the step is given"), HasSubstr("  /materials/steel: no body"),
             HasSubstr("  /probes/idle: it never samples")));

@@ -38,7 +38,7 @@ inline State spheres(const std::vector<Vec3>& centres, const Cell& cell = box(),
   State state(cell);
   for (const Vec3& centre : centres) state.bodies.add(centre, radius, sphere_mass(), sphere_inertia(), 0);
   state.bodies.finish({});
-  state.statistics.add(state.bodies, 0, 0);
+  state.statistics.add(state.bodies, 0, 0, {});
   state.materials = {"sand"};
   state.settings.law = law(law_name);
   state.settings.fields = state.settings.law->state();

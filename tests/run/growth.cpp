@@ -283,10 +283,9 @@ TEST(Growth, IsRefusedIfItMakesNoSense) {
   d["stages"][0]["growth"] = Description::object();
   EXPECT_THAT(refusal(d), HasSubstr("/stages/0/growth: missing key \"rate\" [1/s]"));
   d = two(radius);
-  d["bodies"]["grains"]["density_scaling"]["below"] = 3 * radius;
-  EXPECT_THAT(
-      refusal(d),
-      HasSubstr("/bodies/grains/density_scaling: found density scaling together with growth of bodies in a stage"));
+  d["engines"]["scaling"] = {{"type", "density-scaling"}, {"below", 3 * radius}};
+  EXPECT_THAT(refusal(d),
+              HasSubstr("/engines/scaling: found density scaling together with growth of bodies in a stage"));
   d = two(radius);
   d["stages"][0]["until"] = {{"type", "mean-stress"}};
   EXPECT_THAT(refusal(d), HasSubstr("found neither below nor above"));

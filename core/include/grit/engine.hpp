@@ -33,10 +33,10 @@ struct RigidMotion {
 /// Settings of the kernel's integration, of all bodies or of a group; engines of phase `settings` write them.
 struct MotionSettings {
   Vec3 gravity = Vec3::Zero();  ///< m/s²
-  /// Density scaling: bodies of a smaller radius [m] have the mass of one of this radius.
+  /// Density scaling: bodies of a smaller radius [m] have the mass and the moments of inertia of one of this radius,
+  /// but their own weight.
   double scaled_radius = 0;
-  bool scaled_weight = false;  ///< whether gravity acts on that mass, or on the mass without density scaling
-  double local_damping = 0;    ///< λ in F (1 − λ sgn(F v)), 0 … 1
+  double local_damping = 0;                ///< λ in F (1 − λ sgn(F v)), 0 … 1
   std::array<bool, 3> held_translation{};  ///< axes along which velocities stay constant
   std::array<bool, 3> held_rotation{};     ///< axes about which spins stay constant
   std::optional<RigidMotion> prescribed;   ///< bodies move so, whatever the forces on them are
@@ -61,13 +61,15 @@ struct MotionSettings {
     const Vec3 free = Vec3::Ones() - constrained_rotation();
     return flat ? Vec3(free.cwiseProduct(Vec3::Unit(*flat))) : free;
   }
-  /// Mass without density scaling over mass, of a body of this radius [m]; for clumps, that of the enclosing sphere.
+  /// The radius of a body over that which determines its mass [m]; for clumps, those of the enclosing sphere.
+  double unscaled_ratio(double radius) const { return radius < scaled_radius ? radius / scaled_radius : 1; }
+  /// Mass without density scaling over mass.
   double unscaled_share(double radius) const {
-    const double ratio = radius < scaled_radius ? radius / scaled_radius : 1;
+    const double ratio = unscaled_ratio(radius);
     return ratio * ratio * ratio;
   }
   /// Acceleration of the same body by gravity [m/s²].
-  Vec3 gravity_on(double radius) const { return scaled_weight ? gravity : Vec3(unscaled_share(radius) * gravity); }
+  Vec3 gravity_on(double radius) const { return unscaled_share(radius) * gravity; }
   bool operator==(const MotionSettings&) const = default;
 
  private:

@@ -33,19 +33,14 @@ void check_body(const Vec3& centre, double radius, double mass, double inertia) 
 
 GroupBuilder::GroupBuilder(const SceneDescription& scene, const BodiesDescription& group,
                            std::shared_ptr<const BodyKind> kind)
-    : kind_(std::move(kind)),
-      density_(scene.materials.at(group.material).density),
-      scaled_below_(group.scaled_below()) {
+    : kind_(std::move(kind)), density_(scene.materials.at(group.material).density) {
   const auto names = material_names(scene);
   const auto place = std::ranges::find(names, group.material) - names.begin();
   material_ = narrow_index<std::uint8_t>(static_cast<std::size_t>(place), "materials of bodies");
 }
 
-double GroupBuilder::inert(double radius) const { return std::max(radius, 0.5 * scaled_below_); }
-
 Vec3 GroupBuilder::clump_inertia(double radius) const {
-  const double size = inert(radius);
-  return mass(radius) * size * size * kind_->clump()->inertia;
+  return mass(radius) * radius * radius * kind_->clump()->inertia;
 }
 
 std::optional<double> GroupBuilder::shape_diameter() const {

@@ -16,7 +16,7 @@ class GroupBuilder {
   GroupBuilder(const SceneDescription& scene, const BodiesDescription& group, std::shared_ptr<const BodyKind> kind);
 
   /// Mass of a body [kg]; `radius`: of a clump that of the enclosing sphere [m].
-  double mass(double radius) const { return density_ * kind_->volume(inert(radius)); }
+  double mass(double radius) const { return density_ * kind_->volume(radius); }
   /// Throws Error for a position, radius or mass that the arithmetic cannot hold.
   void add(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
            const Vec3& spin) const;
@@ -31,15 +31,13 @@ class GroupBuilder {
   std::optional<double> shape_diameter() const;
 
  private:
-  /// The radius that determines mass and inertia: larger for small bodies with density scaling.
-  double inert(double radius) const;
   /// Of a single sphere [kg m²].
-  double inertia(double radius) const { return kind_->inertia(inert(radius), mass(radius)); }
+  double inertia(double radius) const { return kind_->inertia(radius, mass(radius)); }
   /// Principal moments of a clump [kg m²].
   Vec3 clump_inertia(double radius) const;
 
   std::shared_ptr<const BodyKind> kind_;
-  double density_, scaled_below_;  // kg/m³, m
+  double density_;  // kg/m³
   std::uint8_t material_;
 };
 

@@ -166,6 +166,18 @@ void check_materials_of_walls(const SceneDescription& scene, const Complain& com
   for (const auto& [name, wall] : scene.walls) known.check("walls/" + name + "/material", wall.material);
 }
 
+void check_growth(const SceneDescription& scene, const Complain& complain) {
+  const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
+  if (std::ranges::none_of(scene.stages, grows)) return;
+  for (const auto& [name, engine] : scene.engines) {
+    MotionSettings settings;
+    engine.engine.make()->settings(settings);
+    if (settings.scaled_radius > 0)
+      complain("engines/" + name, "density scaling together with growth of bodies in a stage",
+               "only one of them, as the scaled masses would not fit the new sizes; remove one");
+  }
+}
+
 /// Reports groups of bodies that do not exist.
 void check_groups(const SceneDescription& scene, const Complain& complain) {
   const References known("group", keys(scene.bodies), complain);
@@ -438,14 +450,6 @@ void StreamSource::declare(Parameters& p) {
       {"number_rate", "mass_rate"});
 }
 
-void DensityScalingDescription::declare(Parameters& p) {
-  p.add("below", below)
-      .unit("m")
-      .at_least(0)
-      .required()
-      .doc("bodies with a smaller diameter get the mass and moment of inertia of a body of this diameter");
-}
-
 BodiesDescription::BodiesDescription(const Registry& registry) : kind(registry) {}
 void BodiesDescription::declare(Parameters& p) {
   p.choose(kind);
@@ -455,8 +459,6 @@ void BodiesDescription::declare(Parameters& p) {
   p.add("overlap", overlap)
       .at_least(0)
       .doc("maximum overlap with existing walls and bodies when they appear in a stage, over the smaller radius");
-  p.add("density_scaling", density_scaling)
-      .doc("differential density scaling, for a longer time step; see scaled_weight of gravity");
   p.add("source", source).required().doc("positions and radii");
 }
 
@@ -1175,6 +1177,7 @@ void SceneDescription::check_together(const Complain& complain) const {
   check_interfaces(*this, complain);
   check_materials_of_bodies(*this, complain);
   check_motions(*this, complain);
+  check_growth(*this, complain);
   check_materials_of_walls(*this, complain);
   check_groups(*this, complain);
   check_followers(*this, complain);
@@ -1216,15 +1219,7 @@ void SceneDescription::declare(Parameters& p) {
   p.check_names([this](const Complain& complain) { check_interfaces(*this, complain); });
   p.check_names([this](const Complain& complain) { check_materials_of_bodies(*this, complain); });
   p.check([this](const Complain& complain) { check_motions(*this, complain); }, {"bodies", "engines"});
-  p.check(
-      [this](const Complain& complain) {
-        const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
-        for (const auto& [name, group] : bodies)
-          if (group.scaled_below() > 0 && std::ranges::any_of(stages, grows))
-            complain("bodies/" + name + "/density_scaling", "density scaling together with growth of bodies in a stage",
-                     "only one of them, as the scaled masses would not fit the new sizes; remove one");
-      },
-      {"bodies", "stages"});
+  p.check([this](const Complain& complain) { check_growth(*this, complain); }, {"engines", "stages"});
   p.check_names([this](const Complain& complain) { check_materials_of_walls(*this, complain); });
   p.check_names([this](const Complain& complain) { check_groups(*this, complain); });
   p.check([this](const Complain& complain) { check_sample(*this, complain); }, {"bodies", "begin"});

@@ -117,11 +117,6 @@ struct SampleSource {
       "the bodies of the group of this name in the sample that /begin names, with their positions and velocities";
   void declare(Parameters&) {}
 };
-/// Small bodies get the mass and moment of inertia of larger ones.
-struct DensityScalingDescription {
-  double below = 0;  ///< m
-  void declare(Parameters& p);
-};
 struct RectangleRegion {
   static constexpr const char* type_name = "rectangle";
   static constexpr const char* type_doc = "a parallelogram";
@@ -205,11 +200,8 @@ struct BodiesDescription {
   Vec3 velocity = Vec3::Zero();
   static constexpr double usual_overlap = 0.01;
   double overlap = usual_overlap;  ///< of the smaller radius
-  std::optional<DensityScalingDescription> density_scaling;
   OneOf<CloudSource, FileSource, LatticeSource, ListSource, StreamSource, SampleSource> source{"source of bodies"};
   bool is_from_sample() const { return std::holds_alternative<SampleSource>(source.value()); }
-  /// m, diameter below which bodies have more mass; 0: none
-  double scaled_below() const { return density_scaling ? density_scaling->below : 0; }
   explicit BodiesDescription(const Registry& registry);
   void declare(Parameters& p);
 };

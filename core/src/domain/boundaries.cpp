@@ -102,7 +102,6 @@ std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leav
                     .time = time,
                     .mass = motion.unscaled_share(radius) / inverse_mass,
                     .position = x},
-                   1 / inverse_mass,
                    0.5 / inverse_mass * v.squaredNorm() + turning,
                    -motion.gravity_on(radius).dot(x) / inverse_mass});
   };

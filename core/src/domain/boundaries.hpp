@@ -29,7 +29,6 @@ void change_periods(Bodies& bodies, const Eigen::Matrix3i& of_old);
 /// A body that leaves, and its energy [J].
 struct Leaving {
   Departure departure;
-  double mass;       ///< with density scaling [kg]
   double kinetic;    ///< of translation and rotation
   double potential;  ///< relative to the origin
 };

@@ -15,6 +15,7 @@
 #include "kernel/cell_servo.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
+#include "kernel/scaled_masses.hpp"
 #include "kernel/specimen.hpp"
 #include "plugins/component_archive.hpp"
 
@@ -131,12 +132,15 @@ void Kernel::change(const SceneDescription& scene, const Components& components)
 }
 
 void Kernel::apply(const SceneDescription& scene, const Components& components) {
+  const Settings before = state_.settings;
   balance_.book_elastic([&] { take_settings(scene, components); });
   const auto kinetic = [this] {
     view_.invalidate_forces();
     return balance_.begun() ? kinetic_energy(view_, 0) : 0;
   };
   const double kinetic_before = kinetic();
+  if (const double gained = scale_masses(state_.bodies, before, state_.settings); gained != 0)
+    state_.statistics.scale(state_.bodies, gained);
   constrain(state_.bodies, state_.settings);
   change_rates(state_, prescribed_rates(state_));
   balance_.add_settings(kinetic() - kinetic_before);
@@ -178,7 +182,7 @@ void Kernel::take_walls(const SceneDescription& scene, const Components& compone
 }
 
 void Kernel::count_in(std::size_t first, std::size_t first_clump) {
-  state_.statistics.add(state_.bodies, first, first_clump);
+  state_.statistics.add(state_.bodies, first, first_clump, unscaled_shares(state_.bodies, state_.settings));
   state_.sum.resize(state_.bodies.count() + 1);
   std::fill(state_.sum.begin() + static_cast<std::ptrdiff_t>(first), state_.sum.end(), BodySum{});
   passes_.resize(state_.bodies.count());
@@ -203,6 +207,7 @@ void Kernel::admit(const SceneDescription& scene, const Components& components) 
     fail(state_, Guard::arrival, error.keys(), "group \"" + error.keys().at(1) + "\": " + error.what(), "");
   }
   if (arriving.bodies.count() == 0) return;
+  scale_masses(arriving.bodies, {}, state_.settings);
   match_velocities(arriving.bodies, state_);
   constrain(arriving.bodies, state_.settings);
 
@@ -234,6 +239,7 @@ void Kernel::let_in() {
   if (!inflow_.due(state_.time.time)) return;
   Bodies entering = inflow_.enter(state_, view_);
   if (entering.count() == 0) return;
+  scale_masses(entering, {}, state_.settings);
   match_velocities(entering, state_);
   constrain(entering, state_.settings);
   append(entering);

@@ -26,10 +26,8 @@ std::vector<ActingEngine> take_engines(const SceneDescription& scene, const Comp
 }
 
 /// The settings of a group; without one, those by engines that act on all groups.
-MotionSettings motion_of(const std::vector<ActingEngine>& engines, std::optional<std::size_t> group,
-                         double scaled_below) {
+MotionSettings motion_of(const std::vector<ActingEngine>& engines, std::optional<std::size_t> group) {
   MotionSettings motion;
-  motion.scaled_radius = 0.5 * scaled_below;
   for (const ActingEngine& one : engines)
     if (group ? one.acts_on(*group) : one.groups.empty()) one.engine->settings(motion);
   return motion;
@@ -58,15 +56,10 @@ Settings settings_of(const SceneDescription& scene, const Components& components
   now.engines = components.engines;
   now.groups = group_names(scene);
   const std::vector<ActingEngine> settings_engines = take_engines(scene, components, now);
-  const auto scaled_below = [&](const std::string& group) { return scene.bodies.at(group).scaled_below(); };
-  const double first = now.groups.empty() ? 0 : scaled_below(now.groups.front());
-  const bool alike =
-      std::ranges::none_of(settings_engines, [](const ActingEngine& one) { return !one.groups.empty(); }) &&
-      std::ranges::all_of(now.groups, [&](const auto& group) { return scaled_below(group) == first; });
-  now.motion = motion_of(settings_engines, std::nullopt, first);
-  if (!alike)
+  now.motion = motion_of(settings_engines, std::nullopt);
+  if (std::ranges::any_of(settings_engines, [](const ActingEngine& one) { return !one.groups.empty(); }))
     for (std::size_t group = 0; group < now.groups.size(); ++group)
-      now.motion_of_groups.push_back(motion_of(settings_engines, group, scaled_below(now.groups[group])));
+      now.motion_of_groups.push_back(motion_of(settings_engines, group));
   for (const auto& [name, wall] : scene.walls) now.groups_of_walls.push_back(group_mask(wall.groups, now.groups));
   now.strain_rate = scene.domain.strain_rate, now.shear_rate = scene.domain.shear_rate.vector();
   now.cell_servo = scene.domain.servo, now.open_sides = scene.domain.open_sides;

@@ -77,7 +77,7 @@ void Stepper::rebuild() {
       const auto motion_of = [this](std::size_t body) -> const MotionSettings& { return state_.motion_of(body); };
       for (Leaving& one : leaving(bodies, wrapped.leaves, state_.time.time, motion_of)) {
         state_.departures.push_back(one.departure);
-        state_.discharged_mass += one.mass;
+        state_.discharged_mass += one.departure.mass;
         balance_.add_settings(-one.kinetic);
         guard_.discharged(one.kinetic + one.potential);
       }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernel/energy_balance.hpp"
+#include "kernel/scaled_masses.hpp"
 #include "kernel/specimen.hpp"
 #include "motion/clump_motion.hpp"
 
@@ -53,14 +54,7 @@ std::span<const Row> WorldView::moments() const {
 }
 
 std::span<const double> WorldView::unscaled_shares() const {
-  unscaled_shares_.clear();
-  if (!state_.settings.any_motion([](const MotionSettings& motion) { return motion.scaled_radius > 0; })) return {};
-  for (std::size_t i = 0; i < count(); ++i) {
-    const std::uint32_t c = state_.bodies.clumps.clump_of(i);
-    const double radius = c == no_clump ? state_.bodies.position[i].w : state_.bodies.clumps.clump[c].radius;
-    unscaled_shares_.push_back(state_.motion_of(i).unscaled_share(radius));
-  }
-  return unscaled_shares_;
+  return unscaled_shares_ = grit::unscaled_shares(state_.bodies, state_.settings);
 }
 
 std::span<const Vec3> WorldView::displacements() const {

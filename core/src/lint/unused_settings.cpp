@@ -192,10 +192,14 @@ std::vector<UnusedSetting> unused_settings(const Scene& described, const Compone
   if (!is_random(values) && scene.seed != 1) say("/seed", "nothing is random: all bodies are given");
   const auto radii = world.positions();
   const auto smallest = std::ranges::min_element(radii, {}, &Row::w);
-  for (const auto& [name, group] : scene.bodies)
-    if (group.stage.empty() && group.scaled_below() > 0 && smallest != radii.end() &&
-        group.scaled_below() <= 2 * smallest->w)
-      say("/bodies/" + name + "/density_scaling/below", "no body is smaller");
+  const bool all_there =
+      std::ranges::all_of(scene.bodies, [](const auto& group) { return group.second.stage.empty(); });
+  for (const auto& [name, engine] : scene.engines) {
+    MotionSettings alone;
+    engine.engine.make()->settings(alone);
+    if (all_there && alone.scaled_radius > 0 && smallest != radii.end() && alone.scaled_radius <= smallest->w)
+      say("/engines/" + name + "/below", "no body is smaller");
+  }
   for (const auto& [name, group] : scene.bodies)
     if (group.stage.empty() && group.overlap != BodiesDescription::usual_overlap)
       say("/bodies/" + name + "/overlap",

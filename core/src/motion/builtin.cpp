@@ -1,5 +1,6 @@
 #include "motion/builtin.hpp"
 
+#include <algorithm>
 #include <array>
 #include <type_traits>
 #include <variant>
@@ -15,19 +16,32 @@ class Gravity final : public Engine {
  public:
   void declare(Parameters& p) override {
     p.add("acceleration", acceleration_).unit("m/s^2").symbol("g").doc("acceleration of every body");
-    p.add("scaled_weight", scaled_weight_)
-        .doc(
-            "with density scaling: true: gravity acts on the scaled mass, so that all bodies fall alike; false: on the "
-            "mass without scaling, so that weights are unchanged and small bodies fall more slowly");
   }
   Phase phase() const override { return Phase::settings; }
-  void settings(MotionSettings& settings) const override {
-    settings.gravity += acceleration_, settings.scaled_weight = settings.scaled_weight || scaled_weight_;
-  }
+  void settings(MotionSettings& settings) const override { settings.gravity += acceleration_; }
 
  private:
   Vec3 acceleration_{0, 0, -9.81};
-  bool scaled_weight_ = false;
+};
+
+class DensityScaling final : public Engine {
+ public:
+  void declare(Parameters& p) override {
+    p.add("below", below_)
+        .unit("m")
+        .above(0)
+        .required()
+        .doc(
+            "bodies with a smaller diameter get the mass and the moments of inertia of a body of this diameter; their "
+            "weight is unchanged");
+  }
+  Phase phase() const override { return Phase::settings; }
+  void settings(MotionSettings& settings) const override {
+    settings.scaled_radius = std::max(settings.scaled_radius, 0.5 * below_);
+  }
+
+ private:
+  double below_ = 0;
 };
 
 class LocalDamping final : public Engine {
@@ -134,9 +148,10 @@ PluginInfo engine(const char* name, const char* doc) {
 }  // namespace
 
 std::span<const PluginInfo> builtin_engines() {
-  static const std::array<PluginInfo, 7> engines{
+  static const std::array<PluginInfo, 8> engines{
       engine<Gravity>("gravity", "the same acceleration for every body"),
       engine<Drag>("drag", "drag of a fluid: Stokes, or Schiller and Naumann"),
+      engine<DensityScaling>("density-scaling", "more inertia of small bodies, for a longer time step"),
       engine<LocalDamping>("local-damping", "Cundall's non-viscous damping of forces and moments"),
       engine<Hold>("hold", "holds spins or velocities of bodies constant"),
       engine<PrescribedMotion>("prescribed-motion",

@@ -7,7 +7,7 @@
 
 namespace grit {
 
-/// gravity, drag, local-damping, hold, planar, prescribed-motion, sink.
+/// gravity, drag, density-scaling, local-damping, hold, planar, prescribed-motion, sink.
 std::span<const PluginInfo> builtin_engines();
 
 }  // namespace grit

@@ -37,7 +37,7 @@ void turn_on(Vec3* turned, std::size_t body, const Quad& spin, const Quad& drift
 
 double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Share of a body's mass on which gravity acts; see MotionSettings::gravity_on().
+/// Share of a body's mass on which gravity acts; see MotionSettings::unscaled_share().
 double weighing_share(double radius, double scaled_radius) {
   if (!(radius < scaled_radius)) return 1;
   const double ratio = radius / scaled_radius;
@@ -57,7 +57,7 @@ struct Kick {
         fall(quad(settings.free_translation()) * quad(Vec3(settings.gravity * step.kick))),
         weight(quad(settings.gravity)),
         damping(settings.local_damping),
-        scaled_radius(settings.scaled_weight ? 0 : settings.scaled_radius) {
+        scaled_radius(settings.scaled_radius) {
     if (settings.prescribed) prescribed.emplace(*settings.prescribed, step.drift);
   }
 };

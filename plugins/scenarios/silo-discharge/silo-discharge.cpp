@@ -142,6 +142,7 @@ Description SiloDischarge::expand() const {
     stage["name"] = discharge(discharged_fractions_[i]);
     if (i == 0) {
       stage["change"]["engines"]["damping"]["coefficient"] = silo_.local_damping;
+      if (silo_.scaled_below > 0) stage["change"]["engines"]["density-scaling"] = nullptr;
       for (const std::string& gate : gates) {
         Description corner = d["walls"][gate]["corner"];
         corner[2] = -drop - silo_.height;

@@ -184,8 +184,9 @@ struct Silo {
         .unit("m")
         .at_least(0)
         .doc(
-            "for a longer time step: grains of a smaller diameter get the mass and inertia of one of this diameter; "
-            "their weight is unchanged after filling; 0: none");
+            "for a longer time step once the grains have fallen: those of a smaller diameter get the mass and inertia "
+            "of "
+            "one of this diameter, and keep their weight; not while sand flows out; 0: none");
     p.add("seed", seed).at_least(0).doc("seed of the random sizes and positions of the grains");
     p.add("analytical_solutions", forms).doc("parameters of reference values; without effect on the grains");
     p.check(
@@ -243,7 +244,7 @@ struct Silo {
   /// Limit of the guard on the displacement per step that falling grains need.
   double travel() const {
     const double speed = throw_factor * (1 - filling_damping) * gravity * falling_time(),
-                 mass = density * std::numbers::pi / 6 * std::pow(std::max(smallest_diameter, scaled_below), 3),
+                 mass = density * std::numbers::pi / 6 * std::pow(smallest_diameter, 3),
                  radius = 0.5 * smallest_diameter,
                  impact = std::numbers::pi * std::sqrt(mass / (2 * contact_modulus * radius)), steps_per_impact = 7;
     return std::max(usual_travel, speed * impact / steps_per_impact / radius);
@@ -298,8 +299,6 @@ struct Silo {
             {"high", vector(width, depth, with_layer(cloud_height()))},
             {"count", std::llround(with_layer(all)) - std::llround(below_layer(all))},
             {"sizes", {{"type", "uniform"}, {"smallest", smallest_diameter}, {"largest", largest_diameter}}}}}};
-      if (scaled_below > 0)
-        d["bodies"]["layer-" + std::to_string(layer + 1)]["density_scaling"]["below"] = scaled_below;
       // Its part of the cloud is above the layers that have fallen.
       if (filling == "layers" && layer > 0)
         d["bodies"]["layer-" + std::to_string(layer + 1)]["stage"] = fill(layer + 1);
@@ -318,8 +317,6 @@ struct Silo {
     walls["back"] = plane(vector(0, depth, 0), vector(0, -1, 0), "smooth");
     d["guards"]["travel"] = travel();
     d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", vector(0, 0, -gravity)}};
-    // Grains of all sizes fall alike; the weight is their own once they are at rest.
-    if (scaled_below > 0) d["engines"]["gravity"]["scaled_weight"] = true;
     d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", filling_damping}};
     return d;
   }
@@ -358,7 +355,6 @@ struct Silo {
     Description settle = stage("settle", settling, 1e-3, settling);
     for (const char* name : {"sand", "dyed"})
       if (name != dyed || layers > 1) settle["change"]["materials"][name]["friction_angle"] = friction_angle;
-    if (scaled_below > 0) settle["change"]["engines"]["gravity"]["scaled_weight"] = false;
     if (relieved()) {
       settle["ramps"] = gravity_goes(reduced_gravity, 1);
       stages.push_back({{"name", "relieve"},
@@ -367,6 +363,9 @@ struct Silo {
                         {"limit", 2 * relief_time()}});
     }
     stages.push_back(settle);
+    if (scaled_below > 0)
+      (relieved() ? *std::prev(stages.end(), 2) : stages.back())["change"]["engines"]["density-scaling"] = {
+          {"type", "density-scaling"}, {"below", scaled_below}};
     return stages;
   }
 
