@@ -313,7 +313,9 @@ TEST_F(Runs, ContinueAfterADiskWasFull) {
   const auto outcome = shell(
       folder.path(), in_a_small_disk + "\"" GRIT_BINARY
                                        "\" run two.json --out small/results --set /output/checkpoint_every=1e-6 --set "
-                                       "/output/frames/every_steps=50 --set /stages/0/until/value=100000'");
+                                       "/output/frames/every_steps=50 --set "
+                                       "\"/output/frames/formats=[\\\"vtk\\\", \\\"lammps-dump\\\"]\" --set "
+                                       "/stages/0/until/value=2000'");  // 41 frames: at least 335 kB
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_THAT(outcome.err,
               AllOf(HasSubstr("No space left on device"),

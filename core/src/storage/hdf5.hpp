@@ -180,8 +180,7 @@ enum class Mode {
 };
 
 /// An open file. It is not locked, so that it can be read while it is being written. Files that are read while they
-/// grow
-/// (`replace`) use the oldest format. It has neither checksums of metadata, which a writer that is killed within a
+/// grow (`replace`) use the oldest format. It has neither checksums of metadata, which a writer that is killed within a
 /// write would leave wrong, nor an "open for writing" mark, which it would leave behind. Data may be on disk only after
 /// flush() or close(); metadata is written only then. Groups and datasets are closed with the file.
 class File : public Group {
