@@ -21,8 +21,8 @@
 
 namespace grit {
 
-/// Whether a type can be saved byte by byte. For a struct of numbers, without pointers, strings or containers,
-/// specialise it: `template <> inline constexpr bool grit::plain_numbers<Mine> = true;`
+/// Whether a type can be saved byte by byte. For a struct of numbers, without pointers, strings, containers or gaps
+/// between members, specialise it: `template <> inline constexpr bool grit::plain_numbers<Mine> = true;`
 template <class T>
 inline constexpr bool plain_numbers = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 template <>

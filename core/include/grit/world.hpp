@@ -50,6 +50,10 @@ struct Cell {
   Vec3 stage_lengths = Vec3::Zero();       ///< side lengths at the start of the stage [m]
   Vec3 stage_shear_strain = Vec3::Zero();  ///< shear rates integrated since the start of the stage
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(low, high, periodic, strain_rate, shear_rate, tilt, stage_lengths, stage_shear_strain);
+  }
   bool periodic_anywhere() const { return periodic[0] || periodic[1] || periodic[2]; }
   bool periodic_everywhere() const { return periodic[0] && periodic[1] && periodic[2]; }
   bool shears() const { return !shear_rate.isZero(0.0); }
@@ -177,6 +181,10 @@ struct Departure {
   double time;    ///< when it was found outside [s]
   double mass;    ///< without density scaling [kg]
   Vec3 position;  ///< at that time [m]
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(id, material, time, mass, position);
+  }
 };
 
 /// Energy balance [J]: stored energies, and work and dissipation since a component first requested it.

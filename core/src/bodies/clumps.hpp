@@ -31,10 +31,11 @@ struct Clump {
   double volume = 0;              ///< m³
 
   Vec3 spin_of(const Vec3& of_momentum) const { return axes * (axes.transpose() * of_momentum).cwiseQuotient(inertia); }
+  void serialize(Archive& archive) {
+    archive(id, first, last, centre, velocity, momentum, orientation, axes, spin, half_turn, chord_rate, inertia,
+            inverse_mass, radius, furthest, volume);
+  }
 };
-
-template <>
-inline constexpr bool plain_numbers<Clump> = true;
 
 /// Relation of a body to its clump.
 struct ClumpSphere {
@@ -42,10 +43,8 @@ struct ClumpSphere {
   /// Shift by periods relative to its clump: few, as a clump has at most 64 spheres, each narrower than half a period.
   std::array<std::int8_t, 3> periods{};
   Vec3 place = Vec3::Zero();  ///< position along the clump's axes from its centre [m]
+  void serialize(Archive& archive) { archive(clump, periods, place); }
 };
-
-template <>
-inline constexpr bool plain_numbers<ClumpSphere> = true;
 
 struct Clumps {
   std::vector<Clump> clump;

@@ -10,8 +10,6 @@
 namespace grit {
 
 template <>
-inline constexpr bool plain_numbers<Cell> = true;
-template <>
 inline constexpr bool plain_numbers<ImageShift> = true;
 
 /// A box that may be periodic along some axes and deform along these, about its centre. In a cell that shears, images

@@ -21,9 +21,6 @@
 
 namespace grit {
 
-template <>
-inline constexpr bool plain_numbers<Departure> = true;
-
 namespace {
 
 Cell cell_of(const DomainDescription& domain) {

@@ -427,7 +427,8 @@ Demand Walls::demand() const {
 void Walls::move(double dt) {
   for (WallState& state : states_) {
     state.pose = moved(state.pose, {state.velocity, state.spin}, dt);
-    state.stage_time += dt, state.swing_time += dt;
+    state.stage_time += dt;
+    if (state.swing_frequency > 0) state.swing_time += dt;
   }
 }
 
