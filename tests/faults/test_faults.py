@@ -1,0 +1,129 @@
+"""usage: test_faults.py campaign | self-test | restarts ROOT GRIT SHIM
+
+campaign   each fault of scripts/faults.py once, in short scenes, with a fixed seed
+self-test  what scripts/faults.py finds in a grit that is wrong, and what it writes
+restarts   scripts/restarts.py with a scene of each kind
+"""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+WHAT, ROOT, GRIT, SHIM = sys.argv[1], *map(Path, sys.argv[2:5])
+HERE = Path(__file__).resolve().parent
+SKIPPED = 77
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / 'scripts'))
+try:
+    import h5py                                          # noqa: F401
+    import numpy                                         # noqa: F401
+except ImportError as missing:
+    print(f'skipped: {missing}')
+    sys.exit(SKIPPED)
+import brief                                             # noqa: E402
+import faults                                            # noqa: E402
+import restarts                                          # noqa: E402
+
+
+def script(name, *words, grit=GRIT, **environment):
+    """Runs a script with the results in a folder of its own. Its status, and what it printed."""
+    with tempfile.TemporaryDirectory() as place:
+        done = subprocess.run(['/usr/bin/python3', ROOT / 'scripts' / name, '--grit', grit, '--shim', SHIM, '--work', place, *words],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, env=os.environ | environment)
+        return done.returncode, done.stdout
+
+
+class Campaign(unittest.TestCase):
+    def test_nothing_is_lost(self):
+        status, text = script('faults.py', '--times', '1', '--seed', '1', '--scale', '0.15')
+        print(text)
+        self.assertEqual(status, 0, text)
+
+
+class Restarts(unittest.TestCase):
+    def test_have_the_same_bits(self):
+        names = ('direct-shear/quick-every-probe', 'heap/quick', 'triaxial/quick-clumps', 'simple-shear/quick', 'screw/quick', 'jkr', 'capillary',
+                 'drag, force-field')
+        status, text = script('restarts.py', '--steps', '100', *(word for name in names for word in ('--only', name)))
+        self.assertEqual(status, 0, text)
+        self.assertEqual(text.count('| same bits |'), len(names), text)
+
+
+class WrongPrograms(unittest.TestCase):
+    """Each does one thing wrong, which is counted in its column."""
+
+    def row(self, how, fault, scene='deforming-cell'):
+        status, text = script('faults.py', '--times', '4', '--only', fault, '--scene', scene, '--scale', '0.1', '--no-load',
+                              grit=HERE / 'broken_grit.py', BROKEN_GRIT=str(GRIT), BROKEN_HOW=how)
+        found = re.search(rf'^\| {re.escape(fault)} \| (\d+) \| (\d+) \| (\d+) \| (\d+) \|', text, re.M)
+        self.assertTrue(found, text)
+        tried, lost, bits, wrong_status = map(int, found.groups())
+        self.assertGreater(tried, 0, text)
+        self.assertEqual(status, 0 if lost + bits + wrong_status == 0 else 1, text)
+        return (lost, bits, wrong_status), text
+
+    def test_nothing_is_found_where_nothing_is_wrong(self):
+        counts, text = self.row('not at all', 'SIGTERM')
+        self.assertEqual(counts, (0, 0, 0), text)
+
+    def test_a_dropped_sample(self):
+        (lost, bits, _), text = self.row('sample', 'SIGTERM')
+        self.assertEqual((lost, bits > 0), (0, True), text)
+        self.assertIn('bits: series.h5: ', text)
+
+    def test_a_changed_bit(self):
+        (lost, bits, _), text = self.row('bit', 'SIGTERM')
+        self.assertEqual((lost, bits > 0), (0, True), text)
+        self.assertRegex(text, 'bits: series.h5: .*time differs')
+
+    def test_a_changed_bit_of_the_final_state(self):
+        (lost, bits, _), text = self.row('state', 'SIGTERM')
+        self.assertEqual((lost, bits > 0), (0, True), text)
+        self.assertIn('bits: final.h5: 1 bytes of the state differ, the first is byte 64', text)
+
+    def test_a_run_that_begins_anew(self):
+        (lost, bits, _), text = self.row('checkpoint', 'SIGTERM')
+        self.assertEqual((lost > 0, bits), (True, 0), text)
+        self.assertIn('was not used', text)
+
+    def test_another_exit_status(self):
+        (_, _, status), text = self.row('status', 'disk full at write')
+        self.assertGreater(status, 0, text)
+        self.assertIn('exit status 70, allowed 0, 5', text)
+
+    def test_an_error_without_a_message(self):
+        (_, _, status), text = self.row('silence', 'disk full at write')
+        self.assertGreater(status, 0, text)
+        self.assertIn('with a message that names nothing: none', text)
+
+
+class Messages(unittest.TestCase):
+    def test_must_name_something(self):
+        for text in ('grit: out/series.h5: cannot write: No space left on device', 'grit: /guards/travel: a body moved by 1 m',
+                     "grit: not enough memory; 'grit check' reports how much it needs", 'grit: cannot write to /tmp/here'):
+            self.assertTrue(faults.is_helpful(text, '/tmp/elsewhere'), text)
+        for text in ('', 'Aborted', 'grit: defect of grit or of a plugin; please report it: std::exception', '1/2 of it'):
+            self.assertFalse(faults.is_helpful(text, '/tmp/elsewhere'), text)
+
+
+class Pages(unittest.TestCase):
+    PAGE = 'before\n<!-- faults -->\n| fault | tried |\n| --- | --- |\n| b | 1 |\n| c | 2 |\n<!-- end of faults -->\nafter\n'
+
+    def test_rows_are_replaced_and_kept_in_order(self):
+        text = brief.with_table(self.PAGE, 'faults', ('fault', 'tried'), [['a', 7], ['c', 8]], ['a', 'b', 'c'])
+        self.assertEqual(text, 'before\n<!-- faults -->\n| fault | tried |\n| --- | --- |\n| a | 7 |\n| b | 1 |\n| c | 8 |\n'
+                               '<!-- end of faults -->\nafter\n')
+
+    def test_the_page_has_both_tables(self):
+        page = (ROOT / 'docs/evidence/reliability.md').read_text(encoding='utf-8')
+        self.assertLessEqual(set(brief.rows_of(page, 'faults')), set(faults.FAULTS))
+        self.assertLessEqual(set(brief.rows_of(page, 'restarts')), set(restarts.scenes()))
+
+
+CASES = {'campaign': (Campaign,), 'restarts': (Restarts,), 'self-test': (WrongPrograms, Messages, Pages)}
+suite = unittest.TestSuite(unittest.defaultTestLoader.loadTestsFromTestCase(case) for case in CASES[WHAT])
+sys.exit(0 if unittest.TextTestRunner(verbosity=2).run(suite).wasSuccessful() else 1)
