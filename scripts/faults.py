@@ -54,6 +54,7 @@ NOTHING_WRITTEN = 'nothing was written'                  # the message of a run 
 CHECKPOINT_EVERY = 0.05                                  # s; no more often than 1 % of the run allows
 FRAMES = 12                                              # in each scene, about
 POLL = 0.002                                             # s
+BUSY = 'import os, sys\nwhile os.getppid() == int(sys.argv[1]): pass'  # until this process ends, however it does
 PATIENCE = 120                                           # s that a run may take, besides 50 times that of the undisturbed one
 
 
@@ -692,7 +693,7 @@ def main():
     given.work.mkdir(parents=True, exist_ok=True)
     place = Path(tempfile.mkdtemp(prefix='', dir=given.work.resolve()))
     campaign = Campaign(given, place)
-    busy = None if given.no_load else subprocess.Popen([sys.executable, '-c', 'while True: pass'])
+    busy = None if given.no_load else subprocess.Popen([sys.executable, '-c', BUSY, str(os.getpid())])
     held = False
     try:
         campaign.prepare()
