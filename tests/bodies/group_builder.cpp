@@ -60,7 +60,7 @@ TEST(GroupBuilder, TakesOverBodiesOfAnotherDensity) {
 
 /// The index of a material in a body has 8 bits.
 TEST(GroupBuilder, RefusesAMaterialWhoseIndexABodyCannotHold) {
-  const Made made(two_grains({2600, 0}, false));
+  const Made made(two_grains(2600, false));
   SceneDescription scene = made.live.now();
   const auto build = [&](std::size_t groups) {
     scene.bodies.clear(), scene.materials.clear();

@@ -24,7 +24,7 @@ TEST(PopulationStatistics, OtherMaterialsAreNoticed) {
   Bodies other;
   other.add({0, 0, 0}, 2 * radius, sphere_mass(), sphere_inertia(), 1);
   other.finish({});
-  state.statistics.add(other, 0, 0);
+  state.statistics.add(other, 0, 0, {});
   EXPECT_FALSE(state.statistics.one_material);
   EXPECT_EQ(state.statistics.largest_radius, 2 * radius);
   EXPECT_EQ(state.statistics.smallest_radius, radius);

@@ -90,7 +90,7 @@ TEST(Formula, WeighsAClumpOnce) {
   world.add({0, 0, 0}, 0.1), world.add({0.1, 0, 0}, 0.1);
   const auto alone = world.add({3, 0, 0}, 0.1);
   world.velocity[alone].w = 1.0 / 2;
-  world.clump[0].centre = {0, 0, 0}, world.clump[0].mass = 4;
+  world.clump[0].centre = {0, 0, 0}, world.clump[0].mass = 5, world.clump[0].unscaled_mass = 4;
   EXPECT_DOUBLE_EQ(value_of("mass", world), 6);
   EXPECT_DOUBLE_EQ(value_of("centre_x", world), 1);
 }
