@@ -288,6 +288,7 @@ TEST_F(Reports, HaveWhatCurvesAreComparedWith) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err,
               AllOf(HasSubstr("--set: /output/references/it/curve/file: "), HasSubstr("nothing.csv: cannot be read")));
+  folder.write("measured.csv", "u,ratio\n0,0\n0.1,0.5\n");
   outcome = refused(R"({"of": "packing/mean_stress", "curve": {"file": "measured.csv", "x": "w", "y": "ratio"}})");
   EXPECT_THAT(outcome.err, HasSubstr("measured.csv:1: there is no column \"w\""));
 }

@@ -344,13 +344,13 @@ class Flows(Given):
         (self.place / 'frames').mkdir()
         (self.place / 'frames' / '000000.dump').write_text(
             'ITEM: TIMESTEP\n7\nITEM: ATOMS id type x y z radius vx vy vz omegax omegay omegaz\n'
-            '0 1 .1 .2 .3 0.001 1 2 3 4 5 6\n1 1 .4 .5 .6 0.002 7 8 9 10 11 12\n')
+            '0 1 .01 .02 .03 0.001 1 2 3 4 5 6\n1 1 .04 .05 -.002 0.003 1 2 3 4 5 6\n2 1 .04 .05 .06 0.002 7 8 9 10 11 12\n')
         with mock.patch.object(packing, '_fill', lambda program, scene, settings: self.place):
             found = packing.flowing(self.fake, 'drum-hertz')
-        self.assertEqual((found.grains, found.radii), (2, (0.001, 0.0015)))
+        self.assertEqual((found.grains, found.radii), (2, (0.001, 0.0015)), 'without the one below the domain')
         written = found.path.read_text()
         self.assertIn('2 atoms\n1 atom types\n\n-0.101 0.101 xlo xhi\n', written)
-        self.assertIn('\nAtoms\n\n1 1 0.002 2500 .1 .2 .3\n2 1 0.004 2500 .4 .5 .6\n\nVelocities\n\n1 1 2 3 4 5 6\n2 7 8', written)
+        self.assertIn('\nAtoms\n\n1 1 0.002 2500 .01 .02 .03\n2 1 0.004 2500 .04 .05 .06\n\nVelocities\n\n1 1 2 3 4 5 6\n2 7 8', written)
 
 
 class Measuring(Given):

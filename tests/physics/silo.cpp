@@ -117,7 +117,7 @@ Raised raised(int times, int fillings = 2) {
 }
 
 TEST(Silo, CarriesItsFillingAsJanssenSays) {
-  const Raised high = raised(8, 1), tall = raised(5), low = raised(3);
+  const Raised high = raised(8, 1), tall = raised(5, 3), low = raised(3);
   // K and μ are means of measured values over the full slices.
   const double surface = 2 * tall.centre, density = tall.weight / (g * across * surface);
   const auto full = static_cast<std::size_t>(surface / slice);

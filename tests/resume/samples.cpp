@@ -34,7 +34,7 @@ constexpr auto prepare = R"({
     "lid": {"type": "plane", "point": [0, 0, "25 mm"], "normal": [0, 0, -1], "area": "1e-4 m^2", "material": "sand",
             "motion": {"servo": {"pressure": "10 kPa", "max_velocity": "0.5 m/s"}}}},
   "engines": {"gravity": {"type": "gravity"}, "damping": {"type": "local-damping", "coefficient": 0.3}},
-  "stages": [{"name": "press", "until": {"type": "all", "of": [{"type": "at-rest", "below": 1e-5}, {"type": "pressure", "wall": "lid", "value": "10 kPa", "within": 1e-3}]}, "limit": "2 s"}],
+  "stages": [{"name": "press", "until": {"type": "all", "of": [{"type": "at-rest", "below": 1e-6}, {"type": "pressure", "wall": "lid", "value": "10 kPa", "within": 1e-3}]}, "limit": "4 s"}],
   "probes": {"walls": {"type": "walls", "every_time": "1 ms"}, "packing": {"type": "packing", "every_time": "1 ms"},
              "energy": {"type": "energy", "every_time": "1 ms"}}
 }

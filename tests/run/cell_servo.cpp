@@ -98,7 +98,7 @@ TEST(CellServo, KeepsNormalStressInSimpleShear) {
   t.kernel().find_forces();
   Mat3 sum = Mat3::Zero();
   int samples = 0;
-  while (t.world().time() < 0.08) {
+  while (t.world().time() < 0.16) {
     t.step_on(50);
     if (t.world().time() > 0.04) sum += whole_stress(t.world()), ++samples;
   }

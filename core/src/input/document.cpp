@@ -254,6 +254,17 @@ Document::Document(Description json, const std::string& source_name) : json_(std
   origins_[""] = {std::make_shared<const Source>(Source{source_name, {}}), 0, ""};
 }
 
+namespace {
+
+/// The same for all names of a file; a pipe has only this one.
+fs::path whole_path(const fs::path& path) {
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(path, error);
+  return error ? path : whole;
+}
+
+}  // namespace
+
 Document Document::load(const fs::path& path) {
   std::vector<fs::path> open;
   return load(path, open);
@@ -261,7 +272,7 @@ Document Document::load(const fs::path& path) {
 
 Document Document::load(const fs::path& path, std::vector<fs::path>& open) {
   const std::string text = read_text(path);
-  open.push_back(fs::weakly_canonical(path));
+  open.push_back(whole_path(path));
   Document document = read(text, {path.string(), path.parent_path()}, open);
   open.pop_back();
   return document;
@@ -289,7 +300,7 @@ Document Document::read(const std::string& text, const Source& source, std::vect
   if (!extends->is_string())
     refuse("found " + describe_value(*extends) + "; allowed is the path of a description, from the folder of this one");
   const fs::path base_path = (source.directory / extends->get<std::string>()).lexically_normal();
-  if (std::ranges::find(open, fs::weakly_canonical(base_path)) != open.end())
+  if (std::ranges::find(open, whole_path(base_path)) != open.end())
     refuse(base_path.string() + " extends itself, directly or through other files; break the cycle");
   std::error_code none;
   if (!fs::is_regular_file(base_path, none)) refuse("there is no file " + base_path.string() + " to extend");

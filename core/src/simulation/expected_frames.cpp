@@ -31,7 +31,7 @@ ExpectedFrames expected_frames(const SceneDescription& scene, const std::vector<
       return frames_of(cadence, duration,
                        counted != nullptr ? static_cast<double>(counted->value) : duration / dt.most);
     };
-    all.least += frames(stage.least);
+    all.least += frames(stage.known || !stage.usual ? stage.least : 0);
     *all.shown += frames(stage.shown());
     all.at_most |= !stage.known && !stage.usual;
   }
