@@ -134,8 +134,8 @@ class Process:
 
 
 def is_helpful(text, folder):
-    """Whether a message names the results or a file, a place in the description, or a command that helps."""
-    names = r"""(^|[\s"'(])/[a-z_]+|\S\.(h5|json|journal|xdmf|pvd|txt|so|html)\b|'grit [a-z]+"""
+    """Whether a message names the results or a file, a place in the description, or a command or size that helps."""
+    names = r"""(^|[\s"'(])/[a-z_]+|\S\.(h5|json|journal|xdmf|pvd|txt|so|html)\b|'grit [a-z]+|use fewer bodies"""
     return str(folder) in text or re.search(names, text) is not None
 
 
