@@ -78,12 +78,17 @@ bool is_run_json(const std::optional<Description>& json) {
 bool is_state(const fs::path& path) {
   if (!is_file(path)) return false;
   try {
-    const hdf5::File file(path, hdf5::Mode::read_whole);
+    const hdf5::File file(path, hdf5::Mode::read);  // not whole: earlier versions wrote no checksum
     return file.has_attribute("format") && file.has("facts") && file.has("state");
   } catch (const FileError&) {
     return false;
   }
 }
+
+// Of versions that wrote no marks.
+constexpr const char* earlier_picture =
+    "text{font-family:'Helvetica Neue',Helvetica,Arial,'Liberation Sans','DejaVu Sans'";
+constexpr const char* earlier_page = "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src";
 
 /// Whether a file has this text near its beginning.
 bool has_mark(const fs::path& path, std::string_view mark) {
@@ -99,7 +104,8 @@ bool is_own_page(fs::path path) {
   if (!is_file(path)) return false;
   std::error_code none;
   if (fs::file_size(path, none) == 0) return true;  // lost when the machine crashed; there is nothing to lose
-  return has_mark(path, path.extension() == ".svg" ? picture_mark : page_mark);
+  if (path.extension() == ".svg") return has_mark(path, picture_mark) || has_mark(path, earlier_picture);
+  return has_mark(path, page_mark) || has_mark(path, earlier_page);
 }
 
 [[noreturn]] void refuse(const fs::path& path, const char* why) {
