@@ -7,7 +7,7 @@
 namespace grit {
 namespace {
 
-// Without numbers of bodies, contacts, triangles and fields; measured on small frames.
+// Estimates, without numbers of bodies, contacts, triangles and fields.
 constexpr double bytes_of_empty_frame = 9e3, bytes_of_wall = 3.2e3, bytes_of_field = 400;
 constexpr double least_bytes_of_empty_frame = 8e3;
 constexpr double bytes_per_contact = 13 * sizeof(double);

@@ -184,9 +184,8 @@ struct Silo {
         .unit("m")
         .at_least(0)
         .doc(
-            "for a longer time step once the grains have fallen: those of a smaller diameter get the mass and inertia "
-            "of "
-            "one of this diameter, and keep their weight; not while sand flows out; 0: none");
+            "for a longer time step once the grains have fallen: those of a smaller diameter get the mass and "
+            "inertia of one of this diameter, and keep their weight; not while sand flows out; 0: none");
     p.add("seed", seed).at_least(0).doc("seed of the random sizes and positions of the grains");
     p.add("analytical_solutions", forms).doc("parameters of reference values; without effect on the grains");
     p.check(
