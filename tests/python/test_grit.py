@@ -147,7 +147,7 @@ class Results(unittest.TestCase):
         going = subprocess.Popen([GRIT, "run", "going.json", "--out", "going", "--threads", "1", "--quiet", "--no-report"], cwd=self.folder,
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
-            while not (self.folder / "going/run.json").exists():
+            while not (self.folder / "going/series.h5").exists():
                 self.assertIsNone(going.poll())
             run = grit.open(self.folder / "going")
             self.assertEqual(run.status, "running")
