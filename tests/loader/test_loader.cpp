@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <ostream>
 
 #include "grit/error.hpp"
@@ -177,6 +178,17 @@ TEST(Loader, NamesAPluginWhoseSymbolThrows) {
   EXPECT_THAT(
       make_error("entry-throwing-int"),
       HasSubstr(file_of("entry-throwing-int") + "): its grit_plugin() threw: something that is not a std::exc"));
+}
+
+TEST(Loader, RefusesALibraryThatChangesTheArithmetic) {
+#ifndef __SSE__
+  GTEST_SKIP() << "the setting is that of x86";
+#endif
+  const volatile double smallest = std::numeric_limits<double>::min();
+  EXPECT_THAT(make_error("flushes-to-zero"),
+              AllOf(HasSubstr(file_of("flushes-to-zero") + "): changes the arithmetic of the process"),
+                    HasSubstr("link it without -ffast-math, -Ofast and -funsafe-math-optimizations")));
+  EXPECT_GT(smallest / 2, 0) << "subnormal numbers are zero from now on";
 }
 
 // ---- the build tag

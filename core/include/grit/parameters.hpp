@@ -118,6 +118,7 @@ class Parameter {
 
   const std::string& name() const { return name_; }
   const Target& target() const { return target_; }
+  Target& target() { return target_; }
   const std::string& unit() const { return unit_; }
   const std::string& symbol() const { return symbol_; }
   const std::string& doc() const { return doc_; }
@@ -236,7 +237,9 @@ class Parameters {
 
   Choice* choice() const { return choice_; }
   const std::deque<Parameter>& entries() const { return entries_; }
+  std::deque<Parameter>& entries() { return entries_; }
   const std::vector<Check>& checks() const { return checks_; }
+  std::vector<Check>& checks() { return checks_; }
   bool is_open() const { return open_; }
   const std::vector<std::string>& keys_resolved_before() const { return resolved_before_; }
   const std::vector<std::function<void()>>& calls_when_read() const { return when_read_; }

@@ -4,6 +4,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
+    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)
+#error "grit: compile without -ffast-math and its parts: results must have the same bits, and NaN is tested for"
+#endif
+
 namespace grit {
 
 using Vec3 = Eigen::Vector3d;

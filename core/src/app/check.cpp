@@ -69,6 +69,8 @@ std::optional<FieldGroup> fields_of(Observer& observer, const World& world) try 
   NoRecorder none;
   observer.sample(0, world, none);
   return observer.fields(world);
+} catch (const PluginError&) {
+  throw;
 } catch (const Error&) {  // it samples in later stages
   return std::nullopt;
 }

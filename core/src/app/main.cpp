@@ -127,6 +127,9 @@ ExitStatus report(const std::function<ExitStatus()>& work) {
                ExitStatus::files);
   } catch (const std::exception& error) {
     return say(std::string("defect of grit or of a plugin; please report it: ") + error.what(), ExitStatus::defect);
+  } catch (...) {
+    return say("defect of grit or of a plugin; please report it: something that is not a std::exception",
+               ExitStatus::defect);
   }
 }
 

@@ -297,8 +297,6 @@ Document expanded(const Document& document, const Registry& registry) {
     throw DescriptionError(std::move(problems));
   } catch (const Error& error) {
     throw DescriptionError({document.problem("/scenario", name + ": " + error.what())});
-  } catch (const std::exception& error) {
-    throw PluginError(name + " failed to expand: " + error.what());
   }
   Document others = document;
   others.erase("/scenario");

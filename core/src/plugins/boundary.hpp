@@ -1,25 +1,49 @@
-// Calls into the code of plugins that should not throw.
+// Calls into the code of plugins.
 #pragma once
 
-#include <exception>
 #include <string>
+#include <string_view>
+#include <typeinfo>
 
 #include "grit/error.hpp"
 
 namespace grit {
 
-/// Returns `call()`. Any exception becomes a PluginError that names the plugin and the called function.
+/// An exception out of a plugin, which it names. Further plugins that it passes are not to blame.
+class BoundaryError : public PluginError {
+ public:
+  using PluginError::PluginError;
+};
+
+/// To be called while an exception is handled. Throws a BoundaryError that names the plugin, the called function and
+/// the cause. A BoundaryError passes, and so does std::bad_alloc: it is no fault of the plugin.
+[[noreturn]] void throw_boundary_error(const std::string& plugin, std::string_view function);
+
+/// Returns `call()`. An exception becomes a BoundaryError.
 template <class Call>
-decltype(auto) at_boundary(const std::string& plugin, const std::string& part, Call&& call) {
-  const auto thrown = [&](const std::string& what) {
-    return PluginError(plugin + ": its " + part + " threw: " + what + "\n  fix the plugin, or choose another one");
-  };
+decltype(auto) at_boundary(const std::string& plugin, std::string_view function, Call&& call) {
   try {
     return call();
-  } catch (const std::exception& error) {
-    throw thrown(error.what());
   } catch (...) {
-    throw thrown("something that is not a std::exception");
+    throw_boundary_error(plugin, function);
+  }
+}
+
+/// The same of a function that may refuse what it is given: a ParameterError, a FileError or a plain Error passes, to
+/// be reported at its place in the description.
+template <class Call>
+decltype(auto) at_boundary_unless_refused(const std::string& plugin, std::string_view function, Call&& call) {
+  try {
+    return call();
+  } catch (const ParameterError&) {
+    throw;
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    if (typeid(error) == typeid(Error)) throw;
+    throw_boundary_error(plugin, function);
+  } catch (...) {
+    throw_boundary_error(plugin, function);
   }
 }
 

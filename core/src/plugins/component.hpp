@@ -13,7 +13,6 @@
 #include "grit/geometry.hpp"
 #include "grit/probe.hpp"
 #include "grit/scenario.hpp"
-#include "plugins/boundary.hpp"
 #include "plugins/parameter_values.hpp"
 #include "plugins/registry.hpp"
 
@@ -38,10 +37,10 @@ class Component : public Choice {
   }
   void declare(Parameters& parameters) override {
     if (!prototype_) return parameters.add_values(values_);
-    declare_of(*prototype_, parameters);
+    prototype_->declare(parameters);
     parameters.when_read([this] {
       Parameters own;
-      declare_of(*prototype_, own);
+      prototype_->declare(own);
       values_ = write(own);
       prototype_.reset();
     });
@@ -61,17 +60,11 @@ class Component : public Choice {
   /// Sets the parameters of an instance of this type to these values.
   void assign_to(Interface& instance) const {
     Parameters own;
-    declare_of(instance, own);
+    instance.declare(own);
     assign(own, values_);
   }
-  /// The name of the plugin in messages.
-  std::string title() const { return registry_->title(kind_name<Interface>(), type_); }
 
  private:
-  void declare_of(Interface& instance, Parameters& parameters) const {
-    at_boundary(title(), "declare()", [&] { instance.declare(parameters); });
-  }
-
   const Registry* registry_;
   std::string type_;
   Description values_ = Description::object();

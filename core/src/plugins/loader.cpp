@@ -1,6 +1,9 @@
 #include "plugins/loader.hpp"
 
 #include <dlfcn.h>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
 
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <boost/dll/shared_library.hpp>
@@ -43,6 +46,27 @@ std::string rebuild() {
   return "rebuild it against this SDK: cmake --fresh -S SOURCES -B BUILD -Dgrit_DIR=" + sdk_package() +
          " -DGRIT_ARCH=" + build_facts().arch + " && cmake --build BUILD --clean-first";
 }
+
+/// Whether calls since construction have changed how floating-point numbers are computed. What is linked with
+/// -ffast-math sets subnormal numbers to zero, in the whole process, when it is opened. Changes are undone.
+class ArithmeticWatch {
+ public:
+  ~ArithmeticWatch() { undo(); }
+#ifdef __SSE__
+  bool undo() {
+    // Of the control register: flags of past operations are no settings.
+    constexpr unsigned flags = 0x3f;
+    const bool changed = ((_mm_getcsr() ^ before_) & ~flags) != 0;
+    if (changed) _mm_setcsr(before_);
+    return changed;
+  }
+
+ private:
+  unsigned before_ = _mm_getcsr();
+#else
+  bool undo() { return false; }
+#endif
+};
 
 /// Keeps a library open until the process ends, intentionally beyond the destructors of static objects: objects,
 /// exceptions and virtual tables of a plugin may be referenced anywhere, and their code must outlive them.
@@ -90,6 +114,7 @@ const PluginInfo& load_plugin(const std::filesystem::path& file, const Kind& kin
     return PluginError(title + ": " + reason + "\n  " + remedy);
   };
 
+  ArithmeticWatch arithmetic;
   Library opened;
   std::error_code failed;
   opened.load(file, failed, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
@@ -100,6 +125,9 @@ const PluginInfo& load_plugin(const std::filesystem::path& file, const Kind& kin
                      file.string() + "` lists undefined symbols");
   }
   const Library& library = keep(std::move(opened));
+  if (arithmetic.undo())
+    throw refuse("changes the arithmetic of the process, as files do that are linked with -ffast-math",
+                 "link it without -ffast-math, -Ofast and -funsafe-math-optimizations");
   if (!library.has(plugin_entry_name))
     throw refuse(std::string("has no function ") + plugin_entry_name,
                  std::string("define extern \"C\" const grit::PluginInfo* ") + plugin_entry_name +

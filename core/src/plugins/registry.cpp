@@ -15,6 +15,7 @@
 #include "grit/toolkit/did_you_mean.hpp"
 #include "plugins/boundary.hpp"
 #include "plugins/build_facts.hpp"
+#include "plugins/guarded.hpp"
 #include "plugins/loader.hpp"
 
 namespace grit {
@@ -161,11 +162,12 @@ std::shared_ptr<Interface> Registry::make(const std::string& name) const {
   constexpr auto kind = kind_name<Interface>();
   const PluginInfo& plugin = info(kind, name);
   const std::string function = std::string("make_") + kind;
-  std::shared_ptr<Interface> made(at_boundary(title(kind, name), function + "()", plugin.*maker<Interface>));
+  std::string who = title(kind, name);
+  std::shared_ptr<Interface> made(at_boundary(who, function + "()", plugin.*maker<Interface>));
   if (!made)
-    throw PluginError(title(kind, name) + ": " + function + "() returned null\n  let " + function +
+    throw PluginError(who + ": " + function + "() returned null\n  let " + function +
                       " return a new object, or throw with the reason");
-  return made;
+  return builtin_.contains({kind, name}) ? made : guarded(std::move(made), std::move(who));
 }
 
 template std::shared_ptr<BodyKind> Registry::make(const std::string&) const;

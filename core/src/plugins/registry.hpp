@@ -40,7 +40,8 @@ class Registry {
   /// The file of a component, which is not opened; empty for a built-in one. The first, if there is another one.
   /// Throws PluginError if unknown.
   std::filesystem::path file(const std::string& kind, const std::string& name) const;
-  /// Creates a component. Throws PluginError as info() does, and if its make_ function throws or returns null.
+  /// Creates a component. Throws PluginError as info() does, and if its make_ function throws or returns null. An
+  /// exception out of the functions of one that is not built in becomes a PluginError: see plugins/guarded.hpp.
   template <class Interface>
   std::shared_ptr<Interface> make(const std::string& name) const;
   /// The name of a plugin in messages, e.g. `contact plugin "linear-rolling"

@@ -36,6 +36,9 @@ class Observer {
     if (const auto* limited = dynamic_cast<const LimitedFields*>(probe_.get())) limited->check_fields(seen(world));
   } catch (const ParameterError& error) {
     throw PlacedError(placed(error, {"probes", name_}));
+  } catch (const Error& error) {
+    if (typeid(error) != typeid(Error)) throw;
+    throw PlacedError({"probes", name_}, error.what());
   }
   const std::string& name() const { return name_; }
   ProbeGroup group() const { return {name_, probe_->channels()}; }

@@ -19,9 +19,6 @@ std::shared_ptr<Interface> prepared_instance(const Component<Interface>& describ
 } catch (const Error& error) {
   report(keys, error.what());
   return nullptr;
-} catch (const std::exception& error) {
-  report(keys, described.title() + ": prepare() failed: " + error.what());
-  return nullptr;
 }
 
 /// Drops entries of `live` that are not in `described`.

@@ -55,7 +55,7 @@ struct LawLoop {
 };
 
 /// evaluate_* is called from several threads at once on disjoint chunks; all other calls come from the thread that owns
-/// the simulation.
+/// the simulation. An exception ends the run, and its message names the law.
 class ContactLaw {
  public:
   virtual ~ContactLaw() = default;
@@ -76,10 +76,10 @@ class ContactLaw {
   /// law's fields.
   virtual std::vector<StateField> state() const = 0;
   virtual LawLoop loop() const = 0;
-  virtual void evaluate_pairs(PairBatch& batch) const noexcept = 0;
-  virtual void evaluate_walls(WallBatch& batch) const noexcept = 0;
+  virtual void evaluate_pairs(PairBatch& batch) const = 0;
+  virtual void evaluate_walls(WallBatch& batch) const = 0;
   /// The same with scalars instead of SIMD lanes, for tests.
-  virtual void evaluate_pairs_reference(PairBatch& batch) const noexcept = 0;
+  virtual void evaluate_pairs_reference(PairBatch& batch) const = 0;
   virtual Stiffness stiffness(const PairSize& pair, std::size_t material_a, std::size_t material_b) const = 0;
   /// Whether bodies may interact at a distance.
   virtual bool has_reach() const { return false; }

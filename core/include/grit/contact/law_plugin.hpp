@@ -65,17 +65,17 @@ class LawPlugin final : public ContactLaw {
       ((features_ >> bit & 1) != 0 ? loop.parts : loop.inactive).push_back(Law::traits.features[bit]);
     return loop;
   }
-  void evaluate_pairs(PairBatch& batch) const noexcept override {
+  void evaluate_pairs(PairBatch& batch) const override {
     if constexpr (has_single)
       if (single()) return pairs<SingleLane>(batch);
     pairs<Lane>(batch);
   }
-  void evaluate_pairs_reference(PairBatch& batch) const noexcept override {
+  void evaluate_pairs_reference(PairBatch& batch) const override {
     if constexpr (has_single)
       if (single()) return pairs<float>(batch);
     pairs<double>(batch);
   }
-  void evaluate_walls(WallBatch& batch) const noexcept override {
+  void evaluate_walls(WallBatch& batch) const override {
     with_features([&]<unsigned F>() {
       if (batch.losses != nullptr) detail::wall_loop<Law, F, Lane, true>(batch, wall_table_.data(), count_);
       else detail::wall_loop<Law, F, Lane, false>(batch, wall_table_.data(), count_);

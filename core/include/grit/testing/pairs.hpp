@@ -12,6 +12,7 @@
 
 namespace grit::test {
 
+/// A sphere with its state.
 struct Ball {
   Vec3 position = Vec3::Zero();
   double radius = 1;
@@ -125,7 +126,7 @@ class Pairs {
     std::replace(b_.begin(), b_.end(), pad_, last);
     pad_ = last;
   }
-  void run(void (ContactLaw::*evaluate)(PairBatch&) const noexcept, bool within = false, bool again = false) {
+  void run(void (ContactLaw::*evaluate)(PairBatch&) const, bool within = false, bool again = false) {
     sum_.assign(position_.size(), {});
     PairBatch batch{.position = position_.data(),
                     .velocity = velocity_.data(),

@@ -1,0 +1,287 @@
+#include "plugins/guarded.hpp"
+
+#include <functional>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <variant>
+
+#include "grit/toolkit/limited_fields.hpp"
+#include "plugins/boundary.hpp"
+
+namespace grit {
+namespace {
+
+/// Calls `declare`, and guards the functions that it leaves in `parameters`: checks, and declarations of nested
+/// objects.
+void guard_declared(const std::string& title, std::string_view function, Parameters& parameters,
+                    const std::function<void()>& declare) {
+  const std::size_t first_entry = parameters.entries().size(), first_check = parameters.checks().size();
+  at_boundary(title, function, declare);
+  for (std::size_t i = first_check; i < parameters.checks().size(); ++i) {
+    auto& run = parameters.checks()[i].run;
+    run = [title, run = std::move(run)](const Complain& complain) {
+      at_boundary(title, "check of parameters", [&] { run(complain); });
+    };
+  }
+  const auto nested = [&title](auto& of_object) {
+    of_object = [title, inner = std::move(of_object)](auto&&... given) {
+      Parameters& own = std::get<sizeof...(given) - 1>(std::forward_as_tuple(given...));
+      guard_declared(title, "declare() of a nested object", own, [&] { inner(given...); });
+    };
+  };
+  for (std::size_t i = first_entry; i < parameters.entries().size(); ++i)
+    std::visit(
+        [&]<class T>(T& target) {
+          if constexpr (requires { target.create; }) nested(target.create);
+          if constexpr (requires { target.append; }) nested(target.append);
+          if constexpr (requires { target.insert; }) nested(target.insert);
+          if constexpr (requires { target.declare; }) nested(target.declare);
+        },
+        parameters.entries()[i].target());
+}
+
+/// What guarded components have in common.
+template <class Interface>
+class Guard {
+ public:
+  Guard(std::shared_ptr<Interface> made, std::string title) : made_(std::move(made)), title_(std::move(title)) {}
+
+ protected:
+  Interface& made() const { return *made_; }
+
+  template <class Call>
+  decltype(auto) guard(std::string_view function, Call&& call) const {
+    return at_boundary(title_, function, std::forward<Call>(call));
+  }
+  template <class Call>
+  decltype(auto) guard_unless_refused(std::string_view function, Call&& call) const {
+    return at_boundary_unless_refused(title_, function, std::forward<Call>(call));
+  }
+  template <class Declare>
+  void guard_declaration(std::string_view function, Parameters& parameters, Declare&& declare) const {
+    guard_declared(title_, function, parameters, declare);
+  }
+  /// A checkpoint may be refused; saving has nothing to refuse.
+  void guard_serialize(Archive& archive) const {
+    const auto serialize = [&] { made().serialize(archive); };
+    if (archive.restoring()) guard_unless_refused("serialize()", serialize);
+    else guard("serialize()", serialize);
+  }
+
+ private:
+  std::shared_ptr<Interface> made_;
+  std::string title_;
+};
+
+class GuardedBodyKind final : public BodyKind, Guard<BodyKind> {
+ public:
+  using Guard::Guard;
+  void declare(Parameters& parameters) override {
+    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
+  }
+  void prepare() override {
+    guard_unless_refused("prepare()", [&] { made().prepare(); });
+  }
+  const ClumpShape* clump() const override {
+    return guard("clump()", [&] { return made().clump(); });
+  }
+  double volume(double radius) const override {
+    return guard("volume()", [&] { return made().volume(radius); });
+  }
+  double inertia(double radius, double mass) const override {
+    return guard("inertia()", [&] { return made().inertia(radius, mass); });
+  }
+};
+
+class GuardedContactLaw final : public ContactLaw, Guard<ContactLaw> {
+ public:
+  using Guard::Guard;
+  void declare(Parameters& parameters) override {
+    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
+  }
+  void clear_materials() override {
+    guard("clear_materials()", [&] { made().clear_materials(); });
+  }
+  void declare_material(const std::string& name, Parameters& parameters) override {
+    guard_declaration("declare_material()", parameters, [&] { made().declare_material(name, parameters); });
+  }
+  void declare_interface(const std::string& a, const std::string& b, Parameters& parameters) override {
+    guard_declaration("declare_interface()", parameters, [&] { made().declare_interface(a, b, parameters); });
+  }
+  void mix(std::span<const std::string> materials, std::size_t of_bodies) override {
+    guard("mix()", [&] { made().mix(materials, of_bodies); });
+  }
+  std::vector<StateField> state() const override {
+    return guard("state()", [&] { return made().state(); });
+  }
+  LawLoop loop() const override {
+    return guard("loop()", [&] { return made().loop(); });
+  }
+  void evaluate_pairs(PairBatch& batch) const override {
+    guard("evaluate_pairs()", [&] { made().evaluate_pairs(batch); });
+  }
+  void evaluate_walls(WallBatch& batch) const override {
+    guard("evaluate_walls()", [&] { made().evaluate_walls(batch); });
+  }
+  void evaluate_pairs_reference(PairBatch& batch) const override {
+    guard("evaluate_pairs_reference()", [&] { made().evaluate_pairs_reference(batch); });
+  }
+  Stiffness stiffness(const PairSize& pair, std::size_t material_a, std::size_t material_b) const override {
+    return guard("stiffness()", [&] { return made().stiffness(pair, material_a, material_b); });
+  }
+  bool has_reach() const override {
+    return guard("has_reach()", [&] { return made().has_reach(); });
+  }
+  double reach(const PairSize& pair, std::size_t material_a, std::size_t material_b) const override {
+    return guard("reach()", [&] { return made().reach(pair, material_a, material_b); });
+  }
+  std::vector<double> reaches(double radius) const override {
+    return guard("reaches()", [&] { return made().reaches(radius); });
+  }
+  std::vector<double> mixed(std::size_t material_a, std::size_t material_b, bool wall) const override {
+    return guard("mixed()", [&] { return made().mixed(material_a, material_b, wall); });
+  }
+  ElasticEnergy energy(const PairSize& pair, std::size_t material_a, std::size_t material_b,
+                       std::span<const double> state) const override {
+    return guard("energy()", [&] { return made().energy(pair, material_a, material_b, state); });
+  }
+};
+
+class GuardedEngine final : public Engine, Guard<Engine> {
+ public:
+  using Guard::Guard;
+  void declare(Parameters& parameters) override {
+    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
+  }
+  Phase phase() const override {
+    return guard("phase()", [&] { return made().phase(); });
+  }
+  StateRequest needs() const override {
+    return guard("needs()", [&] { return made().needs(); });
+  }
+  void settings(MotionSettings& motion) const override {
+    guard("settings()", [&] { made().settings(motion); });
+  }
+  void forces(const World& world, std::span<Row> force, std::span<Row> moment) const override {
+    guard("forces()", [&] { made().forces(world, force, moment); });
+  }
+  bool removes(const World& world, const Vec3& centre) const override {
+    return guard("removes()", [&] { return made().removes(world, centre); });
+  }
+  EngineRates rates(const World& world) const override {
+    return guard("rates()", [&] { return made().rates(world); });
+  }
+  void serialize(Archive& archive) override { guard_serialize(archive); }
+};
+
+class GuardedGeometry final : public Geometry, Guard<Geometry> {
+ public:
+  using Guard::Guard;
+  void declare(Parameters& parameters) override {
+    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
+  }
+  void prepare() override {
+    guard_unless_refused("prepare()", [&] { made().prepare(); });
+  }
+  Bounds bounds() const override {
+    return guard("bounds()", [&] { return made().bounds(); });
+  }
+  bool hollow() const override {
+    return guard("hollow()", [&] { return made().hollow(); });
+  }
+  double area() const override {
+    return guard("area()", [&] { return made().area(); });
+  }
+  Vec3 normal() const override {
+    return guard("normal()", [&] { return made().normal(); });
+  }
+  bool flat() const override {
+    return guard("flat()", [&] { return made().flat(); });
+  }
+  void find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                     std::vector<SurfaceContact>& contacts) const override {
+    guard("find_contacts()", [&] { made().find_contacts(pose, spheres, contacts); });
+  }
+  bool near(const Pose& pose, const Vec3& centre, double reach) const override {
+    return guard("near()", [&] { return made().near(pose, centre, reach); });
+  }
+  std::vector<Vec3> triangles() const override {
+    return guard("triangles()", [&] { return made().triangles(); });
+  }
+  std::optional<std::uint32_t> triangle_of(std::uint32_t feature) const override {
+    return guard("triangle_of()", [&] { return made().triangle_of(feature); });
+  }
+};
+
+class GuardedProbe : public Probe, protected Guard<Probe> {
+ public:
+  using Guard::Guard;
+  void declare(Parameters& parameters) override {
+    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
+  }
+  StateRequest needs() const override {
+    return guard("needs()", [&] { return made().needs(); });
+  }
+  void prepare(const World& world) override {
+    guard_unless_refused("prepare()", [&] { made().prepare(world); });
+  }
+  std::vector<Channel> channels() const override {
+    return guard("channels()", [&] { return made().channels(); });
+  }
+  void sample(const World& world, ChannelValues& values) override {
+    guard("sample()", [&] { made().sample(world, values); });
+  }
+  std::vector<Field> fields(const World& world) override {
+    return guard("fields()", [&] { return made().fields(world); });
+  }
+  void serialize(Archive& archive) override { guard_serialize(archive); }
+};
+
+class GuardedLimitedProbe final : public GuardedProbe, public LimitedFields {
+ public:
+  GuardedLimitedProbe(std::shared_ptr<Probe> made, const LimitedFields& limited, std::string title)
+      : GuardedProbe(std::move(made), std::move(title)), limited_(limited) {}
+  void check_fields(const World& world) const override {
+    guard_unless_refused("check_fields()", [&] { limited_.check_fields(world); });
+  }
+
+ private:
+  const LimitedFields& limited_;  // the same probe
+};
+
+class GuardedScenario final : public Scenario, Guard<Scenario> {
+ public:
+  using Guard::Guard;
+  void declare(Parameters& parameters) override {
+    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
+  }
+  Description expand() const override {
+    return guard_unless_refused("expand()", [&] { return made().expand(); });
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<BodyKind> guarded(std::shared_ptr<BodyKind> made, std::string title) {
+  return std::make_shared<GuardedBodyKind>(std::move(made), std::move(title));
+}
+std::shared_ptr<ContactLaw> guarded(std::shared_ptr<ContactLaw> made, std::string title) {
+  return std::make_shared<GuardedContactLaw>(std::move(made), std::move(title));
+}
+std::shared_ptr<Engine> guarded(std::shared_ptr<Engine> made, std::string title) {
+  return std::make_shared<GuardedEngine>(std::move(made), std::move(title));
+}
+std::shared_ptr<Geometry> guarded(std::shared_ptr<Geometry> made, std::string title) {
+  return std::make_shared<GuardedGeometry>(std::move(made), std::move(title));
+}
+std::shared_ptr<Probe> guarded(std::shared_ptr<Probe> made, std::string title) {
+  if (const auto* const limited = dynamic_cast<const LimitedFields*>(made.get()))
+    return std::make_shared<GuardedLimitedProbe>(std::move(made), *limited, std::move(title));
+  return std::make_shared<GuardedProbe>(std::move(made), std::move(title));
+}
+std::shared_ptr<Scenario> guarded(std::shared_ptr<Scenario> made, std::string title) {
+  return std::make_shared<GuardedScenario>(std::move(made), std::move(title));
+}
+
+}  // namespace grit

@@ -1,0 +1,56 @@
+// Plugins that work, unless $THROW_IN names one of their functions: that one throws what $THROW_WHAT names.
+#pragma once
+
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "grit/error.hpp"
+#include "grit/parameters.hpp"
+#include "grit/plugin.hpp"
+
+namespace throwing {
+
+inline void here(const char* function) {
+  const char* const where = std::getenv("THROW_IN");
+  if (where == nullptr || std::string(where) != function) return;
+  const std::string what = std::getenv("THROW_WHAT");
+  if (what == "std::exception") throw std::runtime_error("lost my way");
+  if (what == "grit::Error") throw grit::Error("lost my way");
+  if (what == "grit::PluginError") throw grit::PluginError("lost my way");
+  if (what == "grit::FileError") throw grit::FileError("lost my way");
+  if (what == "grit::ParameterError") throw grit::ParameterError({{"way", "none", "one"}});
+  if (what == "std::bad_alloc") throw std::bad_alloc();
+  throw 42;
+}
+
+/// An object in the parameters of a plugin.
+struct Part {
+  void declare(grit::Parameters& p) {
+    here("declare() of a nested object");
+    p.check([](const grit::Complain&) { here("check of parameters"); });
+  }
+};
+
+/// Declares a nested object, a list of such, and a check.
+inline void declare(const char* function, grit::Parameters& p) {
+  here(function);
+  static Part part;
+  static std::deque<Part> parts;
+  p.add("part", part);
+  p.add("parts", parts);
+  p.check([](const grit::Complain&) { here("check of parameters"); });
+}
+
+/// The PluginInfo of a plugin whose make_ function is set by `set`.
+template <class Set>
+const grit::PluginInfo* plugin(const char* kind, const char* name, Set set) {
+  here("grit_plugin()");
+  static grit::PluginInfo info;
+  info.kind = kind, info.name = name, info.version = "1.0.0", info.doc = "of the tests of the boundary";
+  set(info);
+  return &info;
+}
+
+}  // namespace throwing
