@@ -2,7 +2,7 @@
 # Installs the dependencies of grit on Debian 12. Needs root or sudo only if something is missing; can be run again.
 #   install-deps.sh [--run | --viewers | --sanitizers]
 #     --run         only what building and running grit needs: no libraries for tests and benchmarks
-#     --viewers     also Chromium and ParaView (1 GB), in which some tests open results as users do
+#     --viewers     also Chromium and ParaView (1 GB), in which some tests open results as users do, and Doxygen
 #     --sanitizers  also what scripts/sanitize.sh and scripts/fuzz.sh need: sanitizers, libFuzzer, names of functions in reports, valgrind
 set -euo pipefail
 
@@ -25,7 +25,7 @@ for_tests=(
   librsvg2-bin                       # pictures as PNG
   python3 python3-h5py               # tests of vector instructions and of the documentation
 )
-viewers=(chromium paraview python3-paraview xvfb)
+viewers=(chromium paraview python3-paraview xvfb doxygen)
 sanitizers=(libclang-rt-16-dev llvm-16 valgrind)
 case ${1-} in
   --run) ;;

@@ -8,6 +8,7 @@
 
 namespace grit {
 
+/// A saved state, with the instant to which it belongs.
 struct Checkpoint {
   std::string stage;             ///< name of the stage that was running
   double time = 0;               ///< simulated [s]

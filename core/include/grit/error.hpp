@@ -52,6 +52,7 @@ inline std::string fault_text(const std::string& found, const std::string& allow
 /// reports each with its line and pointer in the description.
 class ParameterError : public Error {
  public:
+  /// One parameter that is at fault.
   struct Fault {
     std::string key;  ///< of the parameter; "" for the whole object, "outlets/left" for a nested one
     std::string found, allowed;

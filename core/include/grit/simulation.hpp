@@ -22,6 +22,7 @@
 
 namespace grit {
 
+/// How a simulation is opened.
 struct SimulationOptions {
   unsigned threads = 1;           ///< results are identical for any number
   std::vector<std::string> sets;  ///< changes of the description, "/pointer=value", in order

@@ -87,6 +87,7 @@ using SingleLane = Pack<4, float>;
 
 template <class L>
 struct LaneTraits;
+/// Of a register.
 template <std::size_t N, class Real>
 struct LaneTraits<Pack<N, Real>> {
   static constexpr std::size_t width = N;
@@ -94,6 +95,7 @@ struct LaneTraits<Pack<N, Real>> {
   using Mask = typename Pack<N, Real>::Mask;
   using Wide = Pack<N, double>;
 };
+/// Of a single number.
 template <class Real>
 requires std::is_floating_point_v<Real>
 struct LaneTraits<Real> {

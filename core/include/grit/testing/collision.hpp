@@ -8,6 +8,7 @@
 
 namespace grit::test {
 
+/// Results of a collision of two spheres.
 struct Collision {
   double restitution;     ///< speed after over speed before
   double duration;        ///< s

@@ -21,6 +21,7 @@
 
 namespace grit::test {
 
+/// One combination of features of a law, with parameters, and what the contract has to know about it.
 struct LawSetup {
   std::string name;        ///< letters and digits
   LawValues values;        ///< at least three materials
@@ -45,6 +46,7 @@ inline LawValues without(LawValues values, const std::string& name, bool everywh
   return values;
 }
 
+/// What every contact law must fulfil.
 class ContactLawContract : public testing::TestWithParam<LawSetup> {
  protected:
   static constexpr double dt_ = 1e-5;

@@ -51,6 +51,7 @@ inline std::vector<double> acted(const Engine& engine, const World& world) {
   return all;
 }
 
+/// What every engine must fulfil.
 class EngineContract : public testing::TestWithParam<EngineCase> {
  protected:
   static bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {

@@ -18,6 +18,7 @@ inline std::function<std::optional<Clearance>(const Vec3&)> flat_surface(const V
   return [=](const Vec3& x) { return Clearance{normal.dot(x - point), -normal}; };
 }
 
+/// A world of which a test sets each part.
 struct FakeWorld : World {
   double now = 0, time_step = 1e-6, density = 2600;
   std::uint64_t steps = 0;

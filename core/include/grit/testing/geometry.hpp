@@ -104,6 +104,7 @@ inline Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, con
   return a + (vb * ab + vc * ac) / (va + vb + vc);
 }
 
+/// What every geometry must fulfil.
 class GeometryContract : public testing::TestWithParam<GeometryCase> {
  protected:
   const GeometryCase& one() const { return GetParam(); }

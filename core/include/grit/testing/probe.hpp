@@ -70,6 +70,7 @@ inline std::string complaints(Probe& probe) {
   return all;
 }
 
+/// What every probe must fulfil.
 class ProbeContract : public testing::TestWithParam<ProbeCase> {
  protected:
   void SetUp() override {

@@ -21,6 +21,7 @@
 
 namespace grit {
 
+/// A scenario whose parameters were read, and the problems with them.
 template <class S>
 struct ReadScenario {
   std::unique_ptr<S> scenario = std::make_unique<S>();
@@ -100,6 +101,7 @@ std::unique_ptr<Scenario> make_scenario() {
   return std::make_unique<S>();
 }
 
+/// What every scenario must fulfil.
 class ScenarioContract : public testing::TestWithParam<ScenarioCase> {
  protected:
   /// The scenario with the keys of the case.

@@ -46,6 +46,7 @@ class CellAxis {
     own_ = more == 0 ? size : std::min(size, step);
   }
 
+  /// An averaging cell along this axis.
   struct Cell {
     double low, high;        ///< m
     std::size_t begin, end;  ///< its strips, end excluded

@@ -64,6 +64,7 @@ inline double densest_between(const Vec3& walls) {
   return 0.519 + 0.08 * near_walls + 0.28 * near_walls * near_walls;
 }
 
+/// Parameters of the preparation of a specimen, and the stages that prepare it.
 struct Preparation {
   /// Solid fraction of the cloud that compaction starts from.
   static constexpr double cloud_solid_fraction = 0.3;

@@ -43,6 +43,7 @@ class Profile {
                                  : "an axis that is not periodic"}});
   }
 
+  /// Equidistant positions at which the profile has values.
   struct Nodes {
     double first, step;  ///< m
     double at(std::size_t k) const { return first + static_cast<double>(k) * step; }

@@ -68,6 +68,7 @@ struct SiloForms {
   }
 };
 
+/// Parameters and parts of the description of a silo.
 struct Silo {
   static constexpr double gravity = analytical_solutions::gravity;
   /// Solid fraction of the cloud that falls into the silo.

@@ -64,6 +64,7 @@ class SlidingLengths {
   Start now(const World& world) const {
     return {world.walls()[wall_].stage_position[along_], world.walls()[driver_].stage_position[along_]};
   }
+  /// A point of the wall along which the bodies slide.
   struct Point {
     double along, across;  ///< present position [m]
     double moved;          ///< displacement along the wall since the start [m]

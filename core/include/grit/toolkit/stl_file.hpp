@@ -15,7 +15,9 @@ struct Defect {
   std::string found, allowed;
 };
 
+/// What an STL file holds.
 struct Stl {
+  /// One triangle.
   struct Facet {
     std::array<Vec3, 3> corners;  ///< in the file's unit; counter-clockwise as seen from the front
     Vec3 normal;                  ///< as in the file, of any length

@@ -16,8 +16,8 @@ std::string read_bytes(const std::filesystem::path& path, std::string& fault);
 /// Whether bytes begin with a byte-order mark of UTF-16.
 bool is_utf16(std::string_view bytes);
 
-/// Text whose lines end in \n, from text whose lines end in \n, \r\n or \r. A byte-order mark of UTF-8 is removed.
-/// Throws FileError for UTF-16; `name` is that of the file.
+/// Text whose lines end in `\n`, from text whose lines end in `\n`, `\r\n` or `\r`. A byte-order mark of UTF-8 is
+/// removed. Throws FileError for UTF-16; `name` is that of the file.
 std::string plain_text(std::string bytes, const std::string& name);
 
 /// The plain text of a file. Throws FileError "PATH: cannot be read: REASON", or for UTF-16.
@@ -33,7 +33,7 @@ struct WrittenNumber {
 /// too small for double precision becomes 0, one that is too large is a fault.
 WrittenNumber parse_number(std::string_view word);
 
-/// Text for a message: bytes of control characters, of invisible ones and of no UTF-8 become \x00. Longer texts than
+/// Text for a message: bytes of control characters, of invisible ones and of no UTF-8 become `\x00`. Longer texts than
 /// `most` characters are cut.
 std::string visible_text(std::string_view text, std::size_t most = std::string_view::npos);
 

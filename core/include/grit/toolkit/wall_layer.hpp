@@ -73,6 +73,7 @@ class WallLayer {
     }
   }
 
+  /// Displacement of bodies relative to a wall.
   struct Slip {
     double mean = 0, bodies = 0;  ///< mean [m]; number of bodies
   };
