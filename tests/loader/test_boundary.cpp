@@ -413,6 +413,18 @@ TEST(BoundaryOfTheProgram, NamesAFunctionThatThrowsInAThread) {
   EXPECT_THAT(outcome.err, HasSubstr("its near() threw: something that is not a std::exception"));
 }
 
+/// No fault of the plugin: the message says how the run goes on.
+TEST(BoundaryOfTheProgram, LeavesWantOfMemoryToTheRun) {
+  const Throwing throwing("sample()", "std::bad_alloc");
+  const Outcome outcome = run_scene();
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("out of memory: "),
+                                 HasSubstr("or a machine with more memory\n  then run it "
+                                           "again, as there is no checkpoint yet: 'grit "
+                                           "run --overwrite scene.json'"),
+                                 Not(HasSubstr("fix the plugin"))));
+}
+
 TEST(BoundaryOfTheProgram, ReportsARefusalAtItsPlace) {
   const Throwing throwing("prepare()", "grit::ParameterError");
   const Outcome outcome = run_scene();

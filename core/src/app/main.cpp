@@ -121,10 +121,7 @@ ExitStatus report(const std::function<ExitStatus()>& work) {
   } catch (const std::filesystem::filesystem_error& error) {
     return say(error.what(), ExitStatus::files);
   } catch (const std::bad_alloc&) {
-    return say("out of memory: " + bytes_text(peak_memory()) + " were in use at most, and " +
-                   bytes_text(available_memory()) +
-                   " are available now; use fewer bodies, facets or averaging cells, or a machine with more memory",
-               ExitStatus::files);
+    return say(out_of_memory(), ExitStatus::files);
   } catch (const std::exception& error) {
     return say(std::string("defect of grit or of a plugin; please report it: ") + error.what(), ExitStatus::defect);
   } catch (...) {

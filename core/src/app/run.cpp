@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <new>
 
 #include "app/curve_summary.hpp"
 #include "app/interrupt.hpp"
@@ -14,6 +15,7 @@
 #include "app/watch.hpp"
 #include "format/duration.hpp"
 #include "format/number.hpp"
+#include "format/resources.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "output/checkpoint.hpp"
@@ -99,16 +101,21 @@ std::string resume_advice(Guard guard, const std::filesystem::path& folder) {
          (guard == Guard::travel ? "travel" : "energy") + " and continue with --resume";
 }
 
-/// Runs the simulation. A file that cannot be written ends it, on a full disk for one; the message says how to go on.
+/// How a run goes on that has failed for want of space or memory.
+std::string way_on(const RunJob& job) {
+  return has_checkpoint(job.folder)
+             ? "continue from the last checkpoint: 'grit run --resume " + shell_word(job.folder.string()) + '\''
+             : "run it again, as there is no checkpoint yet: 'grit run --overwrite " + shell_word(job.file) + '\'';
+}
+
+/// Runs the simulation. A file that cannot be written ends it, on a full disk for one, and so does want of memory; the
+/// message says how to go on.
 RunSummary run_or_advise(Simulation& simulation, const RunJob& job) try {
   return run_recorded(simulation);
 } catch (const FileError& error) {
-  const bool saved = has_checkpoint(job.folder);
-  throw FileError(error.what() + std::string("\n  free space on the disk, or remove the cause, then ") +
-                  (saved
-                       ? "continue from the last checkpoint: 'grit run --resume " + shell_word(job.folder.string())
-                       : "run it again, as there is no checkpoint yet: 'grit run --overwrite " + shell_word(job.file)) +
-                  '\'');
+  throw FileError(error.what() + std::string("\n  free space on the disk, or remove the cause, then ") + way_on(job));
+} catch (const std::bad_alloc&) {
+  throw FileError(out_of_memory() + "\n  then " + way_on(job));
 }
 
 RunFacts facts_of(const RunJob& job, unsigned threads, const std::vector<std::string>& command_line) {

@@ -101,4 +101,9 @@ std::string bytes_text(double bytes) {
   return fmt::format("{:.3g} {}", bytes, units[unit]);
 }
 
+std::string out_of_memory() {
+  return "out of memory: " + bytes_text(peak_memory()) + " were in use at most, and " + bytes_text(available_memory()) +
+         " are available now; use fewer bodies, facets or averaging cells, or a machine with more memory";
+}
+
 }  // namespace grit

@@ -19,4 +19,7 @@ double available_disk(const std::filesystem::path& folder);
 /// "3.4 GB" of 3.4e9 bytes.
 std::string bytes_text(double bytes);
 
+/// A message after std::bad_alloc: what was used, what there is, and what to do.
+std::string out_of_memory();
+
 }  // namespace grit
