@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <fstream>
+#include <new>
 
 #include "folder.hpp"
 #include "grit/error.hpp"
@@ -144,6 +146,39 @@ TEST(Hdf5, ReportsAFullDisk) {
   }
   signal(SIGXFSZ, handler);
   EXPECT_THAT(text, testing::AllOf(HasSubstr("a.h5"), HasSubstr("cannot write: "), HasSubstr("File too large")));
+}
+
+/// No work begins, and what is open can be closed: libhdf5 may crash where memory ends.
+TEST(Hdf5, BeginsNothingWithoutMemory) {
+  const Folder folder;
+  const std::vector<double> many(1000, 1.0);
+  hdf5::File(folder / "whole.h5", hdf5::Mode::replace).write("many", {many.size()}, std::span(many));
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  rlimit small = before;
+  small.rlim_cur = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + (std::size_t{1} << 20);
+  {
+    hdf5::File file(folder / "a.h5", hdf5::Mode::replace), whole(folder / "whole.h5", hdf5::Mode::read);
+    auto growing = file.create_growing<double>("growing", {}, 100);
+    const auto written = whole.dataset("many");
+    ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
+    EXPECT_THROW(file.write("many", {many.size()}, std::span(many)), std::bad_alloc);
+    // The first failure left memory to close files; it is taken here.
+    std::size_t now = 0;
+    std::ifstream("/proc/self/statm") >> now;
+    EXPECT_LT(now, pages);
+    small.rlim_cur = now * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + (std::size_t{1} << 20);
+    ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
+    EXPECT_THROW(growing.append(std::span(many)), std::bad_alloc);
+    EXPECT_THROW(written.read<double>(), std::bad_alloc);
+    EXPECT_THROW(file.flush(), std::bad_alloc);
+    EXPECT_THROW(file.close(), std::bad_alloc);
+    EXPECT_THROW(hdf5::File(folder / "b.h5", hdf5::Mode::replace), std::bad_alloc);
+    setrlimit(RLIMIT_AS, &before);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.h5"));
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
 #include "storage/hdf5.hpp"
 
 #include <hdf5.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -26,6 +29,35 @@ constexpr unsigned chunk_index_half = 128;
 constexpr std::size_t copy_increment = std::size_t{1} << 16;
 // Block size of a checksum.
 constexpr std::size_t checked_bytes = std::size_t{1} << 20;
+
+/// Address space, which costs no memory. libhdf5 may crash where memory ends. So none of its work begins without as
+/// much to spare, and if there is not, this much is released for closing what is open.
+class Reserve {
+ public:
+  Reserve() : kept_(map()) {}
+
+  /// Throws std::bad_alloc if memory has ended.
+  void demand() {
+    if (void* const more = map()) return unmap(more);
+    if (void* const kept = kept_.exchange(nullptr)) unmap(kept);
+    throw std::bad_alloc();
+  }
+
+ private:
+  static constexpr std::size_t bytes = std::size_t{1} << 24;
+  static void* map() {
+    void* const memory = ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    return memory == MAP_FAILED ? nullptr : memory;
+  }
+  static void unmap(void* memory) { ::munmap(memory, bytes); }
+
+  std::atomic<void*> kept_;
+};
+
+void demand_memory() {
+  static Reserve reserve;
+  reserve.demand();
+}
 
 /// The library's innermost message, which is closest to the cause. For failed system calls, the system's message.
 std::string reason() {
@@ -177,6 +209,7 @@ void check_kind(const std::filesystem::path& path, Mode mode) {
 }
 
 hid_t open_file(const std::filesystem::path& path, Mode mode) {
+  demand_memory();
   // A file that could not be closed because of a full disk would be closed again at exit, which crashes. All other
   // files are closed by then. Must be called before any other function of the library.
   static const herr_t no_cleanup = H5dont_atexit();
@@ -333,10 +366,12 @@ Shape Dataset::readable_rows(std::size_t first, std::size_t count) const {
 }
 
 void Dataset::get(Number type, void* values) const {
+  demand_memory();
   checked(H5Dread(handle_.id(), native(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values), where_, "read");
 }
 
 void Dataset::get(Number type, std::size_t first, std::size_t count, void* values) const {
+  demand_memory();
   auto dims = shape();
   const auto file = rows_of(handle_.id(), dims, first, count, where_);
   dims[0] = count;
@@ -357,6 +392,7 @@ void Dataset::append(Number type, std::size_t size, const void* values) {
   if (row == 0) throw FileError(where_ + ": cannot append: its rows are empty");
   if (size % row != 0)
     throw FileError(where_ + ": cannot append " + std::to_string(size) + " numbers: a row has " + std::to_string(row));
+  demand_memory();
   const auto first = dims.at(0), count = size / row;
   dims[0] += count;
   checked(H5Dset_extent(handle_.id(), lengths(dims).data()), where_, "grow");
@@ -419,6 +455,7 @@ Dataset Group::write(const std::string& name, const Shape& shape, Number type, s
   if (size != product(shape))
     throw FileError(where + ": cannot write " + std::to_string(size) + " numbers into a shape of " +
                     std::to_string(product(shape)));
+  demand_memory();
   const auto extent = space(shape, where);
   const auto creation = owned(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, where, "prepare the dataset");
   // Without a cache, chunks are written now. Otherwise a full disk would be noticed when the dataset is closed, which
@@ -462,7 +499,10 @@ Dataset Group::create_growing(const std::string& name, const Shape& row, std::si
 File::File(const std::filesystem::path& path, Mode mode)
     : Group(Handle(open_file(path, mode), H5Fclose), path.string()) {}
 
-void File::flush() { checked(H5Fflush(handle_.id(), H5F_SCOPE_LOCAL), where_, "write"); }
+void File::flush() {
+  demand_memory();
+  checked(H5Fflush(handle_.id(), H5F_SCOPE_LOCAL), where_, "write");
+}
 
 void File::close() {
   flush();
