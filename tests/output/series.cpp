@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -157,6 +158,13 @@ TEST(Series, ThatIsCompleteIsRefusedWithAnyFlippedByte) {
   }
   EXPECT_TRUE(is_sealed(path));
   EXPECT_EQ(read_channel(folder.path(), "test/time").samples, 6u);
+}
+
+TEST(Series, IsNotReadFromANamedPipe) {
+  const Folder folder;
+  ASSERT_EQ(::mkfifo((folder / "series.h5").c_str(), 0600), 0);
+  EXPECT_THAT(error_of<FileError>([&] { read_channel(folder.path(), "test/time"); }),
+              HasSubstr("series.h5: is not a file"));
 }
 
 // What libhdf5 did at damaged files: a crash, an abort, an endless loop.

@@ -15,6 +15,7 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::vector<ProbeGroup> probes{
     {"test", {{"stress_ratio", "1", "shear over normal stress", {}}}},
@@ -98,6 +99,14 @@ TEST_F(Journal, RefusesAnotherContentAndChangesNothing) {
   EXPECT_THAT(refusal(), HasSubstr("other numbers of samples"));
   std::filesystem::remove(path);
   EXPECT_THAT(refusal(), AllOf(HasSubstr("series.journal: cannot open"), HasSubstr("start again (--overwrite)")));
+}
+
+// The samples are not lost: it may be on a disk that is read-only for now.
+TEST_F(Journal, ThatCannotBeOpenedIsNoReasonToStartAgain) {
+  std::filesystem::remove(path);
+  std::filesystem::create_directory(path);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("series.journal: cannot open it for writing: "),
+                               HasSubstr("; remove the cause, then try again"), Not(HasSubstr("--overwrite"))));
 }
 
 TEST_F(Journal, ReportsThatItWasRemoved) {

@@ -35,6 +35,7 @@ constexpr std::chrono::milliseconds retry_interval{10};
 Stamp stamp_of(const std::filesystem::path& path) {
   struct stat state {};
   if (::stat(path.c_str(), &state) != 0) throw FileError(path.string() + ": there is no such file");
+  if (!S_ISREG(state.st_mode)) throw FileError(path.string() + ": is not a file");
   return {state.st_ino, state.st_size, state.st_mtim.tv_sec * 1'000'000'000 + state.st_mtim.tv_nsec};
 }
 

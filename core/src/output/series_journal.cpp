@@ -19,21 +19,24 @@ namespace {
 
 constexpr std::size_t largest_buffer = std::size_t{1} << 20;
 
-int opened(const std::filesystem::path& path, int flags, const char* advice) {
+int opened(const std::filesystem::path& path, int flags) {
   const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | flags, 0666);
-  if (file < 0) throw FileError(path.string() + ": cannot open it for writing: " + std::strerror(errno) + advice);
+  if (file < 0) {
+    const int error = errno;
+    throw FileError(path.string() + ": cannot open it for writing: " + std::strerror(error) +
+                    (error == ENOENT ? "; without it the series cannot be restored to the checkpoint: start again "
+                                       "(--overwrite)"
+                                     : "; remove the cause, then try again"));
+  }
   return file;
 }
 
 }  // namespace
 
-SeriesJournal::SeriesJournal(const std::filesystem::path& path)
-    : path_(path), file_(opened(path, O_CREAT | O_TRUNC, "")) {}
+SeriesJournal::SeriesJournal(const std::filesystem::path& path) : path_(path), file_(opened(path, O_CREAT | O_TRUNC)) {}
 
 SeriesJournal::SeriesJournal(const std::filesystem::path& path, const Extent& kept)
-    : path_(path),
-      file_(opened(path, 0, "; without it the series cannot be restored to the checkpoint: start again (--overwrite)")),
-      kept_(kept) {}
+    : path_(path), file_(opened(path, 0)), kept_(kept) {}
 
 SeriesJournal::~SeriesJournal() { ::close(file_); }
 
