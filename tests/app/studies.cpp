@@ -364,7 +364,7 @@ TEST_F(Advised, ReportsUnevaluatedMetricsAndIdenticalSamples) {
 TEST_F(Studies, ThatGiveNoAdviceReportWhyAndWhatToDo) {
   const auto outcome = grit({"advise", std::string(GRIT_SOURCE_DIR) + "/sims/triaxial/quick.json"});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("triaxial.json: varies model parameters, not numerical settings"),
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("triaxial.json: is a sweep, of other parameters than numerical settings"),
                                  HasSubstr("run a study of your scene that varies numerical settings")));
 }
 
@@ -591,11 +591,11 @@ TEST_F(Studies, GiveAdvice) {
   EXPECT_THAT(sheared.err,
               HasSubstr("quick.json is a scene of the scenario \"direct-shear\", so that it does not apply"));
   EXPECT_EQ(sheared.out, "");
-  evaluated["advice"] = false;
+  evaluated["purpose"] = "sweep";
   folder.write("sand.json", evaluated.dump());
   const auto sand = grit({"advise", "two.json", "--study", "sand.json"});
   EXPECT_EQ(sand.status, 1);
-  EXPECT_THAT(sand.err, HasSubstr("varies model parameters, not numerical settings"));
+  EXPECT_THAT(sand.err, HasSubstr("is a sweep, of other parameters than numerical settings"));
   evaluated.erase("title");
   folder.write("half.json", evaluated.dump());
   for (const char* no_study : {"two.json", "half.json", "none.json", "results"}) {

@@ -260,12 +260,14 @@ TEST_F(AdviceOf, AStudyWithoutErrorsIsRefused) {
   EXPECT_THAT(refused({}), HasSubstr("has no errors of any metric"));
 }
 
-TEST_F(AdviceOf, AStudyMayDeclareThatItGivesNoAdvice) {
+TEST_F(AdviceOf, ASweepGivesNone) {
   advice(0.1);
-  EXPECT_TRUE(study.advice);
-  result["advice"] = false;
-  advice(0.1);
-  EXPECT_FALSE(study.advice);
+  EXPECT_FALSE(study.sweep);
+  result["purpose"] = "sweep";
+  result["effects"] = json::array();
+  const OwnFolder folder;
+  study = read_evaluated_study(folder.write("study.json", result.dump()), {});
+  EXPECT_TRUE(study.sweep);
 }
 
 TEST_F(AdviceOf, TheLeastCertainMetricDecides) {

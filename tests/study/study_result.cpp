@@ -454,12 +454,97 @@ TEST_F(Charts, SpeedIsOfCoreSeconds) {
   for (const VariantResult& one : result().variants) EXPECT_DOUBLE_EQ(one.particle_steps_per_core_second, 70);
 }
 
-TEST_F(Charts, CallsEffectsOfModelParametersDifferences) {
+TEST_F(Charts, SpeaksOfDifferencesFromGivenReferences) {
   make_all();
-  StudyResult all = result();
-  EXPECT_THAT(study_page(all), HasSubstr("error of end"));
-  all.study.advice = false;
-  EXPECT_THAT(study_page(all), testing::AllOf(HasSubstr("difference of end"), Not(HasSubstr("error of"))));
+  EXPECT_THAT(study_page(result()), HasSubstr("error of end"));
+  const StudyResult given = result(R"({"end": {"type": "last", "of": "test/y", "value": 2}})");
+  EXPECT_THAT(study_page(given),
+              testing::AllOf(HasSubstr("difference of end from its reference"), Not(HasSubstr("error of")),
+                             HasSubstr("cheaper than the most expensive"), Not(HasSubstr("the finest"))));
+  EXPECT_THAT(verdict(given), Not(HasSubstr("finest")));
+}
+
+/// A sweep of the friction at two seeds.
+class Sweeps : public Charts {
+ protected:
+  StudyResult sweep(const std::string& metric = R"("value": 1.25)",
+                    const std::set<std::filesystem::path>& omitted = {}) {
+    folder.write("scene.json", "{}");
+    const auto path = folder.write("study.json", R"({"scene": "scene.json", "purpose": "sweep", "settings": {
+      "friction": {"pointers": ["/f"], "values": ["30 deg", "10 deg", "20 deg"], "doc": "between grains"}},
+      "seeds": {"values": [1, 2]}, "metrics": {"end": {"type": "last", "of": "test/y")" +
+                                                     (metric.empty() ? "" : ", " + metric) + "}}}");
+    return evaluate_study(load_study(path), folder.path(), omitted);
+  }
+  void make_sweep() {
+    make("friction=30_deg", 1, 1.3, 1.5);
+    make("friction=10_deg", 3, 1.0, 1.2);
+    make("friction=20_deg", 2, 1.2, 1.3);
+  }
+};
+
+TEST_F(Sweeps, ShowMeansAndStandardErrorsAgainstTheSetting) {
+  make_sweep();
+  const StudyResult all = sweep();
+  ASSERT_EQ(all.variants.size(), 3u);
+  const Value& first = all.variants[0].values.at("end");
+  EXPECT_DOUBLE_EQ(first.mean, 1.4);
+  EXPECT_NEAR(first.standard_error(), 0.1, 1e-15) << "√0.02 over √2";
+  EXPECT_FALSE(all.cheapest);
+  EXPECT_THAT(all.effects, testing::IsEmpty());
+  EXPECT_EQ(verdict(all), "end is closest to 1.25 with friction=20 deg: 1.25 ± 0.05.");
+  const std::string page = study_page(all);
+  EXPECT_THAT(page,
+              testing::AllOf(HasSubstr("friction [deg]"), HasSubstr("between grains"), HasSubstr("6 of 6 runs done"),
+                             HasSubstr("given value"), HasSubstr("class=\"spread\"")));
+  for (const char* word : {"finest", "errors", "error of", "tolerance", "accurate"})
+    EXPECT_THAT(page, Not(HasSubstr(word))) << word;
+}
+
+TEST_F(Sweeps, NeedNoReference) {
+  make_sweep();
+  const StudyResult all = sweep("");
+  EXPECT_EQ(verdict(all), "");
+  EXPECT_THAT(all.unevaluated, testing::IsEmpty());
+  EXPECT_EQ(to_json(all).at("metrics").at("end").at("reference"), "none");
+  EXPECT_EQ(to_json(all).at("purpose"), "sweep");
+}
+
+TEST_F(Sweeps, HaveATableOfMeansAndStandardErrors) {
+  make_sweep();
+  const std::string csv = to_csv(sweep());
+  EXPECT_THAT(csv, testing::StartsWith("variant,\"friction\",metric,unit,mean,standard_error,standard_deviation,"
+                                       "difference,core_seconds,steps,samples_done,samples\n"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
+  EXPECT_THAT(csv, HasSubstr("\"friction=10 deg\",\"10 deg\",\"end\",\"Pa\",1.1,0"));
+}
+
+TEST_F(Sweeps, AreDrawnFromTheRunsThatAreThere) {
+  make_sweep();
+  make_run_json(folder / "runs/friction=10_deg/seed-2", 1, "running");
+  std::filesystem::remove_all(folder / "runs/friction=20_deg");
+  const StudyResult half = sweep("", {folder.path() / "runs/friction=30_deg/seed-1"});
+  EXPECT_EQ(half.count("done"), 2u);
+  EXPECT_DOUBLE_EQ(half.variants[0].values.at("end").mean, 1.5);
+  EXPECT_DOUBLE_EQ(half.variants[1].values.at("end").mean, 1.0);
+  EXPECT_TRUE(std::isnan(half.variants[1].values.at("end").standard_error())) << "one sample has no scatter";
+  EXPECT_TRUE(half.variants[2].values.empty());
+  EXPECT_EQ(of_progress(half),
+            "2 of 6 runs are done; 1 under way: friction=10 deg, seed 2; 3 missing: friction=30 deg, seed 1; "
+            "friction=20 deg, seed 1; friction=20 deg, seed 2.");
+  EXPECT_THAT(study_page(half), testing::AllOf(HasSubstr("2 of 6 runs done"), HasSubstr("seed 2: under way")));
+}
+
+TEST_F(Sweeps, DrawCurvesForEachLevel) {
+  make_sweep();
+  const StudyResult all = sweep(R"("against": "test/x")");
+  EXPECT_TRUE(all.variants[0].curves.empty());
+  folder.write("study.json", R"({"scene": "scene.json", "purpose": "sweep", "settings": {
+      "friction": {"pointers": ["/f"], "values": ["30 deg", "10 deg", "20 deg"]}},
+      "seeds": {"values": [1, 2]}, "metrics": {"way": {"type": "curve", "of": "test/y", "against": "test/x"}}})");
+  const StudyResult curves = evaluate_study(load_study(folder / "study.json"), folder.path());
+  EXPECT_NEAR(curves.variants[0].curves.at("way").mean.back(), 1.4, 1e-15);
+  EXPECT_THAT(study_page(curves), testing::AllOf(HasSubstr("way by friction"), HasSubstr("friction=30 deg")));
 }
 
 }  // namespace

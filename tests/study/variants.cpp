@@ -53,6 +53,16 @@ TEST(Variants, TheUsualMayBeTheFinest) {
               ElementsAre("rate=2", "usual"));
 }
 
+TEST(Variants, OfASweepHaveNoFinest) {
+  constexpr auto one = R"({"rate": {"pointers": ["/rate"], "values": [3, 2, 1], "usual": "2"}})";
+  EXPECT_THAT(names(study_of(one, R"(, "purpose": "sweep")")), ElementsAre("rate=3", "rate=2", "rate=1"));
+  EXPECT_THAT(names(study_of(two_settings, R"(, "purpose": "sweep")")),
+              ElementsAre("usual", "rate=3", "rate=1", "size=fine"));
+  EXPECT_THAT(names(study_of(two_settings, R"(, "purpose": "sweep", "vary": "crossed")")),
+              ElementsAre("rate=3, size=coarse", "rate=2, size=coarse", "rate=1, size=coarse", "rate=3, size=fine",
+                          "rate=2, size=fine", "rate=1, size=fine"));
+}
+
 TEST(Variants, SetTheValuesOfTheStudyTheLevelsAndTheSeed) {
   const auto study = study_of(two_settings, R"(, "set": {"/title": "x"}, "seeds": {"pointer": "/s", "values": [4]})");
   EXPECT_THAT(sets_of(study, variants(study).back(), 4),
@@ -74,6 +84,8 @@ TEST(Studies, ReportErrors) {
               HasSubstr("/settings/r/values/1: found 3; allowed is a list of 2 values"));
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 2], "labels": ["a"]}})"), HasSubstr("1 label;"));
   EXPECT_THAT(problems_of("{}"), HasSubstr("/settings"));
+  EXPECT_THAT(problems_of(two_settings, R"(, "purpose": "calibration")"),
+              HasSubstr("/purpose: found \"calibration\"; allowed is one of accuracy, sweep"));
   EXPECT_THAT(problems_of(two_settings, R"(, "seeds": {"values": [1, 1]})"), HasSubstr("/seeds/values/0"));
   EXPECT_THAT(problems_of(two_settings, R"(, "seeds": {"values": [1.5]})"), HasSubstr("found 1.5; allowed"));
   EXPECT_THAT(problems_of(two_settings, R"(, "seeds": {"values": [1e300]})"), HasSubstr("from 0 to 1000000000000000"));

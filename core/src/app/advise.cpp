@@ -58,7 +58,7 @@ std::string nearest_scene(const std::vector<EvaluatedStudy>& studies, const std:
     return lacks(parts, one.parts).size() + lacks(one.parts, parts).size();
   };
   for (const EvaluatedStudy& one : studies)
-    if (one.advice && !one.parts.empty() && (nearest == nullptr || apart(one) < apart(*nearest))) nearest = &one;
+    if (!one.sweep && !one.parts.empty() && (nearest == nullptr || apart(one) < apart(*nearest))) nearest = &one;
   if (nearest == nullptr) return "";
   return fmt::format(" (the closest study is \"{}\": {})", nearest->title, unlike_parts(*nearest, parts));
 }
@@ -85,10 +85,9 @@ std::string relation(const EvaluatedStudy& study, const std::string& file, const
 
 std::string no_advice(const EvaluatedStudy& study) {
   return fmt::format(
-      "{}: varies model parameters, not numerical settings (\"advice\": false), so that it gives no advice; run a "
-      "study "
-      "of your scene that varies numerical settings, such as rate, stiffness and time step (see 'grit describe study' "
-      "and sims/studies), and give its study.json with --study",
+      "{}: is a sweep, of other parameters than numerical settings, so that it gives no advice; run a study of your "
+      "scene that varies numerical settings, such as rate, stiffness and time step (see 'grit describe study' and "
+      "sims/studies), and give its study.json with --study",
       study.file.string());
 }
 
@@ -102,7 +101,7 @@ std::vector<EvaluatedStudy> studies_like(const std::string& scenario, const std:
   std::vector<std::string> files;
   for (const EvaluatedStudy& study : all) {
     files.push_back(study.file.string());
-    if (!study.advice && !scenario.empty() && study.scenario == scenario) other = &study;
+    if (study.sweep && !scenario.empty() && study.scenario == scenario) other = &study;
     if (is_of(study, scenario, parts)) studies.push_back(read_evaluated_study(study.file, metrics));
   }
   if (studies.empty() && other != nullptr) throw UsageError(no_advice(*other));
@@ -356,7 +355,7 @@ ExitStatus advise_command(const std::vector<std::string>& words) {
   std::vector<EvaluatedStudy> studies;
   for (const auto& result : options.list("study")) {
     studies.push_back(read_evaluated_study(result, options.list("metric")));
-    if (!studies.back().advice) throw UsageError(no_advice(studies.back()));
+    if (studies.back().sweep) throw UsageError(no_advice(studies.back()));
   }
   const auto scenario = scenario_type(Document::load(file));
   const auto parts = parts_of(now);

@@ -22,7 +22,7 @@ std::span<const Command> commands() {
       {"plugins", "[NAME]", "List the installed components, or one in detail.", plugins_command},
       {"describe", "[NAME]", "Print the parameters of a section of a description, or of a component.",
        describe_command},
-      {"study", "STUDY", "Run a study of speed against accuracy; plot error against cost.", study_command},
+      {"study", "STUDY", "Run a sweep, or a study of speed against accuracy; plot its metrics.", study_command},
       {"advise", "FILE", "Suggest cheaper settings within a tolerance, from the results of a study.", advise_command},
       {"report", "DIR…", "Write a page with curves and grains of one run, or of several side by side.", report_command},
   }};

@@ -2,6 +2,7 @@
 
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -20,6 +21,7 @@
 #include "description/placed_error.hpp"
 #include "format/duration.hpp"
 #include "format/number.hpp"
+#include "format/symbols.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 #include "grit/toolkit/text_file.hpp"
@@ -330,7 +332,7 @@ bool is_own_table(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::string head;
   std::getline(file, head);
-  return head.starts_with("variant,") && head.find(",metric,mean,error,") != std::string::npos;
+  return head.starts_with("variant,") && head.find(",metric,") != std::string::npos;
 }
 
 /// Of a run that did not begin there is only the log.
@@ -389,21 +391,41 @@ void run_missing(const StudyDescription& study, const std::vector<Run>& runs, st
   if (!trouble.empty()) throw FileError(trouble);
 }
 
+/// "peak 21.4 ± 0.3 kPa" of each metric with one value.
+std::vector<std::string> value_texts(const VariantResult& one) {
+  std::vector<std::string> texts;
+  for (const auto& [name, value] : one.values) {
+    const ReadableUnit shown = readable(value.unit, std::abs(value.mean));
+    const double spread = shown.factor * value.standard_error();
+    texts.push_back(fmt::format("{} {:.4g} ± {}{}", name, shown.factor * value.mean,
+                                std::isfinite(spread) ? fmt::format("{:.2g}", spread) : "?",
+                                shown.unit.empty() || shown.unit == "1" ? "" : " " + shown.unit));
+  }
+  return texts;
+}
+
 void print(const StudyResult& result) {
   for (const VariantResult& one : result.variants) {
     std::cout << "  " << one.variant.name << ": ";
-    if (one.complete()) {
-      std::cout << fmt::format("{} on one core, largest error {} ± {} ({})\n", cost_text(one.core_seconds),
+    if (result.study.is_sweep() && (!one.values.empty() || !one.curves.empty())) {
+      auto texts = value_texts(one);
+      texts.push_back(cost_text(one.core_seconds) + " on one core");
+      std::cout << fmt::format("{}\n", fmt::join(texts, ", "));
+      continue;
+    }
+    if (one.complete() && !result.study.is_sweep()) {
+      std::cout << fmt::format("{} on one core, largest {} {} ± {} ({})\n", cost_text(one.core_seconds),
+                               result.study.compares_with_finest() ? "error" : "difference",
                                percent(one.of_worst().error), percent(one.of_worst().standard_error), one.worst);
       continue;
     }
     const auto failed = std::ranges::find_if(one.samples, [](const Sample& s) { return s.status != "done"; });
     std::cout << (failed == one.samples.end() ? "no reference"
-                  : failed->message.empty()   ? "not finished"
+                  : failed->message.empty()   ? failed->status
                                               : failed->message)
               << '\n';
   }
-  std::cout << verdict(result) << '\n';
+  if (const std::string conclusion = verdict(result); !conclusion.empty()) std::cout << conclusion << '\n';
 }
 
 }  // namespace
@@ -462,7 +484,12 @@ ExitStatus study_command(const std::vector<std::string>& words) {
   print(result);
   for (const std::string& line : not_evaluated(result)) std::cerr << "grit: not evaluated: " << line << std::endl;
   std::cout << "page: " << (out / "study.html").string() << '\n';
-  return result.reference.empty() ? ExitStatus::numerics : ExitStatus::done;
+  const bool any =
+      result.study.is_sweep()
+          ? std::ranges::any_of(result.variants,
+                                [](const VariantResult& one) { return !one.values.empty() || !one.curves.empty(); })
+          : !result.reference.empty();
+  return any ? ExitStatus::done : ExitStatus::numerics;
 }
 
 }  // namespace grit

@@ -28,7 +28,7 @@ InstalledStudies installed_studies() {
 }
 
 bool is_of(const EvaluatedStudy& study, const std::string& scenario, const std::vector<std::string>& parts) {
-  if (!study.advice || study.scenario != scenario) return false;
+  if (study.sweep || study.scenario != scenario) return false;
   return !scenario.empty() || study.parts == parts;
 }
 

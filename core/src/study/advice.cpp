@@ -59,7 +59,7 @@ EvaluatedStudy evaluated_study(const std::filesystem::path& file, const Descript
                        json.at("title").get<std::string>(),
                        json.at("scenario").get<std::string>(),
                        json.value("parts", std::vector<std::string>()),
-                       json.value("advice", true),
+                       json.value("purpose", "accuracy") == "sweep",
                        json.at("samples").get<std::size_t>(),
                        json.value("of_samples", "")};
   read_metrics(study, json, metrics);
@@ -83,7 +83,7 @@ EvaluatedStudy evaluated_study(const std::filesystem::path& file, const Descript
       has_errors |= std::ranges::any_of(evidence.findings, [](const Finding& one) { return std::isfinite(one.error); });
     }
   }
-  if (!has_errors)
+  if (!has_errors && !study.sweep)
     throw FileError(
         fmt::format("{}: has no errors of {}, so that it gives no advice; see its page, or run 'grit study' again",
                     file.string(), metrics.empty() ? "any metric" : fmt::format("{}", fmt::join(metrics, ", "))));

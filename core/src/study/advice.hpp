@@ -36,7 +36,7 @@ struct EvaluatedStudy {
   std::filesystem::path file;
   std::string title, scenario;
   std::vector<std::string> parts;  ///< components of its scene, from parts_of()
-  bool advice = true;              ///< whether it varies numerical settings, not model parameters
+  bool sweep = false;              ///< whether its settings are other than numerical: it gives no advice
   std::size_t samples = 0;
   std::string of_samples = {};                                 ///< a remark on the samples; may be empty
   std::map<std::string, std::vector<Evidence>> settings = {};  ///< from the cheapest level to the finest

@@ -63,8 +63,8 @@ void MetricDescription::declare(Parameters& p) {
           "channel of the abscissa; default: time, or the index in a profile. A curve omits points at which the "
           "abscissa does not exceed all values before");
   p.add("scale", scale).above(0).doc("divisor of errors; default: largest magnitude of the reference");
-  p.add("value", value).doc("reference value; default: result of the finest settings");
-  p.add("curve", curve).doc("reference curve; default: result of the finest settings");
+  p.add("value", value).doc("reference value; default: result of the finest settings, none in a sweep");
+  p.add("curve", curve).doc("reference curve; default: result of the finest settings, none in a sweep");
   p.check([this](const Complain& complain) {
     check_channel(of, "of", complain), check_channel(against, "against", complain);
     if (value && is_curve()) complain("value", "one value for a curve", "a reference curve, or neither");
@@ -81,7 +81,9 @@ void SettingDescription::declare(Parameters& p) {
   p.add("pointers", pointers).required().entries(1).doc("JSON pointers of the values to vary in the scene");
   p.add("values", values)
       .required()
-      .doc("levels, from the cheapest to the finest; with several pointers, a list of values per level");
+      .doc(
+          "levels, in a study of accuracy from the cheapest to the finest; with several pointers, a list of values per "
+          "level");
   p.add("labels", labels).doc("names of the levels; default: the values");
   p.add("usual", usual).doc("label of the level used while other settings vary; default: the first");
   p.check(
@@ -141,18 +143,21 @@ void SeedsDescription::declare(Parameters& p) {
 void StudyDescription::declare(Parameters& p) {
   p.add("title", title).doc("one line");
   p.add("scene", scene).file().required().doc("description to run");
+  p.add("purpose", purpose)
+      .one_of({"accuracy", "sweep"})
+      .doc(
+          "accuracy: numerical settings, whose errors against the finest are compared with their cost; sweep: any "
+          "other parameters, metrics against each of them. 'grit advise' uses studies of accuracy only");
   p.add("set", set).doc("values by JSON pointer that override those of the scene in all runs");
   p.add("settings", settings).required().doc("settings to vary, by name");
   p.add("vary", vary)
       .one_of({"one-at-a-time", "crossed"})
       .doc(
-          "one-at-a-time: each setting alone, the others at their usual levels, and all at their finest; crossed: all "
-          "combinations");
+          "one-at-a-time: each setting alone, the others at their usual levels, and for accuracy all at their finest; "
+          "crossed: all combinations");
   p.add("seeds", seeds).doc("samples; errors below the scatter between samples are not resolved");
   p.add("metrics", metrics).required().doc("results to compare, by name");
-  p.add("tolerance", tolerance).above(0).doc("allowed error, as a fraction of the scale");
-  p.add("advice", advice)
-      .doc("whether 'grit advise' may use the study; false if it varies model parameters, not numerical settings");
+  p.add("tolerance", tolerance).above(0).doc("allowed error, as a fraction of the scale, in a study of accuracy");
   p.resolved_before({"extends"});
   p.check(
       [this](const Complain& complain) {
@@ -162,6 +167,11 @@ void StudyDescription::declare(Parameters& p) {
       },
       {"set", "settings", "metrics"});
   p.check([this](const Complain& complain) { check_pointers(*this, complain); }, {"settings", "seeds"});
+}
+
+bool StudyDescription::compares_with_finest() const {
+  return !is_sweep() &&
+         std::ranges::any_of(metrics, [](const auto& metric) { return !metric.second.has_own_reference(); });
 }
 
 StudyDescription load_study(const std::filesystem::path& path) {

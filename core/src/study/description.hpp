@@ -1,4 +1,4 @@
-// Description of a study of speed against accuracy: one scene, varied settings, and metrics.
+// Description of a study: one scene, varied settings, and metrics.
 #pragma once
 
 #include <cstdint>
@@ -68,6 +68,8 @@ struct MetricDescription {
 
   void declare(Parameters& p);
   bool is_curve() const;
+  /// Whether the description gives its reference.
+  bool has_own_reference() const { return value || curve; }
 };
 
 struct SettingDescription {
@@ -93,15 +95,18 @@ struct SeedsDescription {
 };
 
 struct StudyDescription {
-  std::string title, scene, vary = "one-at-a-time";
+  std::string title, scene, purpose = "accuracy", vary = "one-at-a-time";
   Description set = Description::object();
   std::map<std::string, SettingDescription> settings;
   SeedsDescription seeds;
   std::map<std::string, MetricDescription> metrics;
   double tolerance = 0.05;
-  bool advice = true;  ///< whether `grit advise` may use it
 
   void declare(Parameters& p);
+  /// Whether metrics are shown against the settings, without a finest level to compare with.
+  bool is_sweep() const { return purpose == "sweep"; }
+  /// Whether the finest settings are the reference of a metric.
+  bool compares_with_finest() const;
 };
 
 /// Throws FileError and DescriptionError with all problems.

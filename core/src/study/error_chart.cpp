@@ -111,10 +111,7 @@ class ErrorChart {
         if (metric_.empty() || metric_ == name) largest.scatter = std::max(largest.scatter, finite(one.scatter));
     return largest;
   }
-  std::string title() const {
-    const std::string error = word_for_error(result_.study);
-    return metric_.empty() ? "largest " + error + " of all metrics" : error + " of " + metric_;
-  }
+  std::string title() const { return deviation_title(result_.study, metric_); }
 
   void front(Svg& svg, const LogAxis& x, const LogAxis& y) const {
     std::vector<const VariantResult*> all;

@@ -13,6 +13,7 @@
 #include "output/svg.hpp"
 #include "study/error_chart.hpp"
 #include "study/study_sentences.hpp"
+#include "study/sweep_page.hpp"
 
 namespace grit {
 namespace {
@@ -20,12 +21,19 @@ namespace {
 /// Two digits; "?" if unknown.
 std::string or_unknown(double value) { return std::isfinite(value) ? fmt::format("{:.2g}", value) : "?"; }
 
+/// The cost that others are compared with: of the finest settings, or the largest.
+double cost_to_compare(const StudyResult& result) {
+  if (result.study.compares_with_finest()) return result.finest().core_seconds;
+  return std::ranges::max(result.variants, {}, &VariantResult::core_seconds).core_seconds;
+}
+
 std::string variants_table(const StudyResult& result) {
-  std::string html =
+  std::string html = fmt::format(
       "<div class=\"wide\"><table><thead><tr><th>#</th><th class=\"name\">changed settings</th><th>core-seconds</th>"
-      "<th>cheaper than the finest</th><th>steps</th><th>M particle-steps per core-second</th>";
+      "<th>cheaper than the {}</th><th>steps</th><th>M particle-steps per core-second</th>",
+      result.study.compares_with_finest() ? "finest" : "most expensive");
   for (const auto& [name, reference] : result.reference)
-    html += "<th>" + word_for_error(result.study) + " of " + escaped(name) + "</th>";
+    html += "<th>" + escaped(deviation_title(result.study, name)) + "</th>";
   html += "</tr></thead><tbody>\n";
   std::vector<std::size_t> order(result.variants.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -38,18 +46,18 @@ std::string variants_table(const StudyResult& result) {
         result.cheapest == i ? " class=\"best\"" : "", colour_of(result, one), i + 1, escaped(one.variant.name),
         one.on_front ? " <b title=\"no other variant is both cheaper and more accurate\">◂</b>" : "",
         finer.empty() ? "" : "<br><small>not within the tolerance: " + escaped(finer) + "</small>");
-    html += one.core_seconds > 0
-                ? fmt::format("<td>{:.3g} <small>± {}</small></td><td>{}</td><td>{:.0f}</td><td>{:.2f}</td>",
-                              one.core_seconds, or_unknown(one.cost_scatter),
-                              result.finest().core_seconds > 0
-                                  ? ratio_text(result.finest().core_seconds / one.core_seconds) + " times"
-                                  : "?",
-                              one.steps, 1e-6 * one.particle_steps_per_core_second)
-                : "<td>–</td><td>–</td><td>–</td><td>–</td>";
+    html +=
+        one.core_seconds > 0
+            ? fmt::format(
+                  "<td>{:.3g} <small>± {}</small></td><td>{}</td><td>{:.0f}</td><td>{:.2f}</td>", one.core_seconds,
+                  or_unknown(one.cost_scatter),
+                  cost_to_compare(result) > 0 ? ratio_text(cost_to_compare(result) / one.core_seconds) + " times" : "?",
+                  one.steps, 1e-6 * one.particle_steps_per_core_second)
+            : "<td>–</td><td>–</td><td>–</td><td>–</td>";
     for (const auto& [name, reference] : result.reference) {
       const auto found = one.deviations.find(name);
       if (found == one.deviations.end()) {
-        html += "<td>failed or missing</td>";
+        html += "<td>not finished</td>";
       } else if (&one == &result.finest() && found->second.error == 0) {
         html += "<td>reference</td>";
       } else {
@@ -96,7 +104,7 @@ std::string values_part(const StudyResult& result) {
 
 /// Cost and changes of each level of a setting, as bars.
 std::string effects_part(const StudyResult& result) {
-  if (result.effects.empty()) return "";
+  if (result.effects.empty() || !result.study.compares_with_finest()) return "";
   std::string html =
       "<h2>Effect of each setting</h2>\n<p>Each level is compared with the finest of the same setting, all others at "
       "their usual levels.</p>\n"
@@ -143,7 +151,7 @@ std::string failures_part(const StudyResult& result) {
     for (const Sample& sample : result.variants[i].samples)
       if (sample.status != "done")
         html += fmt::format("<li><b>{} {}</b>, seed {:.0f}: {}</li>\n", i + 1, escaped(result.variants[i].variant.name),
-                            sample.seed, sample.status == "failed" ? escaped(sample.message) : "not finished");
+                            sample.seed, sample.status == "failed" ? escaped(sample.message) : sample.status);
   return html.empty() ? "" : "<h2>Failed and unfinished runs</h2>\n<ul>\n" + html + "</ul>\n";
 }
 
@@ -164,24 +172,27 @@ tr.best{background:var(--band)}.over{color:var(--over)}
 }  // namespace
 
 std::string study_page(const StudyResult& result) {
+  if (result.study.is_sweep()) return sweep_page(result);
   const std::string title = result.study.title.empty() ? "speed against accuracy" : result.study.title;
   std::string html = page_begin(title, sheet) + "<h1>" + escaped(title) + "</h1>\n";
+  const bool with_finest = result.study.compares_with_finest();
   html += fmt::format(
-      "<p>{}, {} samples per variant; {}s ± standard error, core-seconds ± standard deviation, both from the scatter "
-      "between samples. Run by grit {}.{}</p>\n",
+      "<p>{}, {} samples per variant; {} ± standard error, core-seconds ± standard deviation, both from the scatter "
+      "between samples. Run by grit {}.</p>\n",
       escaped(std::filesystem::proximate(result.study.scene).string()), result.study.seeds.values.size(),
-      word_for_error(result.study), escaped(fmt::format("{}", fmt::join(result.revisions, ", "))),
-      result.study.advice ? ""
-                          : " The study varies model parameters, not numerical settings: differences are relative to "
-                            "the variant called finest, and are not errors.");
+      with_finest ? "errors" : "differences from the references",
+      escaped(fmt::format("{}", fmt::join(result.revisions, ", "))));
   html += "<p class=\"verdict\">" + escaped(verdict(result)) + "</p>\n";
   if (!result.reference.empty()) {
     html += "<div class=\"first\">" + error_chart(result, "") + "</div>\n";
-    html +=
-        "<p><small>Lower is more accurate, further left is cheaper; no variant is better in both than those on the "
-        "stepped line. In the shaded area differences are within the scatter between samples. The finest variant lies "
-        "on the axis. A variant is within the tolerance only if all finer ones are: an error that grows again at a "
-        "finer setting was small because errors cancelled.</small></p>\n";
+    html += fmt::format(
+        "<p><small>Lower is {}, further left is cheaper; no variant is better in both than those on the stepped line. "
+        "In the shaded area differences are within the scatter between samples. {}</small></p>\n",
+        with_finest ? "more accurate" : "closer to the references",
+        with_finest ? "The finest variant lies on the axis. A variant is within the tolerance only if all finer ones "
+                      "are: an error that grows again at a finer setting was small because errors cancelled."
+                    : "A variant is within the tolerance only if those with settings further down their lists are, "
+                      "too.");
   }
   html += "<h2>Variants</h2>\n" + variants_table(result) + values_part(result) + effects_part(result) +
           unevaluated_part(result) + failures_part(result);

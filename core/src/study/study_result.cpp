@@ -30,7 +30,9 @@ Sample read_sample(const StudyDescription& study, double seed, const std::filesy
   const auto entry = [&](const char* key) { return run->value(key, Description()); };
   const auto text = [&](const char* key) { return entry(key).is_string() ? entry(key).get<std::string>() : ""; };
   const auto number = [&](const char* key) { return entry(key).is_number() ? entry(key).get<double>() : 0.0; };
-  if (const auto status = text("status"); status == "done" || status == "failed") sample.status = status;
+  const std::string status = text("status");
+  if (status == "done" || status == "failed") sample.status = status;
+  else if (status == "running" || status == "interrupted") sample.status = "under way";
   sample.message = text("message");
   if (const auto revision = run->value(Description::json_pointer("/grit/revision"), Description());
       revision.is_string())
@@ -144,7 +146,7 @@ std::optional<Range> reference_range(const StudyResult& result, const std::strin
     const ReferencePoints curve = read_reference(*metric.curve);
     return Range{curve.x.front(), curve.x.back()};
   }
-  if (!all_done(result.finest())) return std::nullopt;
+  if (result.study.is_sweep() || !all_done(result.finest())) return std::nullopt;
   const auto finest = metrics_of(result.finest(), name);
   Range mean;
   for (const Metric* one : finest) mean.from += one->x.front(), mean.to += one->x.back();
@@ -162,7 +164,7 @@ void find_lacks(StudyResult& result) {
         had |= sample.metrics.contains(name);
         const auto lack = sample.lacks.find(name);
         if (lack == sample.lacks.end()) continue;
-        if (&outcome == &result.finest()) result.unevaluated.emplace(name, of_the_finest(sample, lack->second));
+        if (result.is_finest(outcome)) result.unevaluated.emplace(name, of_the_finest(sample, lack->second));
         else if (why.empty()) why = lack->second;
       }
     if (!had && !why.empty()) result.unevaluated[name] = "missing in all runs: " + why;
@@ -178,7 +180,7 @@ void find_lacks(StudyResult& result) {
 void find_short_curves(StudyResult& result) {
   for (const auto& [name, metric] : result.study.metrics) {
     if (!metric.is_curve() || result.unevaluated.contains(name)) continue;
-    if (!metric.curve && all_done(result.finest())) {
+    if (!metric.curve && !result.study.is_sweep() && all_done(result.finest())) {
       const auto finest = metrics_of(result.finest(), name);
       if (!shared_abscissae(finest, finest)) {
         result.unevaluated[name] = "the samples of the finest settings share no range of the abscissa";
@@ -200,7 +202,7 @@ void find_short_curves(StudyResult& result) {
             &sample, fmt::format("{} has abscissae from {:g} to {:g}, its reference from {:g} to {:g}; if a stage ends "
                                  "by a condition, choose another abscissa or another condition",
                                  metric.of, own.x.front(), own.x.back(), range->from, range->to));
-        if (&outcome == &result.finest())
+        if (result.is_finest(outcome))
           result.unevaluated.emplace(name, of_the_finest(sample, short_ones.back().second));
       }
     if (!shared && !short_ones.empty())
@@ -256,15 +258,26 @@ double cost_ratio_error(const VariantResult& own, const VariantResult& other) {
 }
 
 void find_values(const StudyResult& result, VariantResult& outcome) {
-  if (!all_done(outcome)) return;
+  const bool sweep = result.study.is_sweep();
+  if (!sweep && !all_done(outcome)) return;
   for (const auto& [name, metric] : result.study.metrics) {
-    if (metric.is_curve() ||
-        std::ranges::any_of(outcome.samples, [&](const Sample& s) { return s.lacks.contains(name); }))
+    const bool lacked = std::ranges::any_of(outcome.samples, [&](const Sample& s) { return s.lacks.contains(name); });
+    if (sweep ? result.unevaluated.contains(name) : lacked || metric.is_curve()) continue;
+    std::vector<const Metric*> metrics;
+    for (const Sample& sample : outcome.samples)
+      if (sample.status == "done") metrics.push_back(&sample.metrics.at(name));
+    if (metrics.empty()) continue;
+    const auto x = shared_abscissae(metrics, metrics);
+    if (!x) continue;
+    const Sampled all = sampled(values_at(metrics, *x));
+    if (!metric.is_curve()) {
+      const double scatter = result.scatter(std::sqrt(all.variance.front()));
+      outcome.values[name] = {all.mean.front(), scatter, metrics.front()->unit, metrics.size()};
       continue;
-    const auto metrics = metrics_of(outcome, name);
-    const Sampled values = sampled(values_at(metrics, {}));
-    const double scatter = result.scatter(std::sqrt(values.variance.front()));
-    outcome.values[name] = {values.mean.front(), scatter, metrics.front()->unit};
+    }
+    MeanCurve& curve =
+        outcome.curves[name] = {*x, all.mean, {}, metrics.front()->unit, metrics.front()->x_unit, metrics.size()};
+    for (const double variance : all.variance) curve.scatter.push_back(result.scatter(std::sqrt(variance)));
   }
 }
 
@@ -274,6 +287,7 @@ void find_references(StudyResult& result) {
     if (result.unevaluated.contains(name)) continue;
     Metric reference;
     if (metric.value) reference.y = {*metric.value};
+    else if (result.study.is_sweep() && !metric.curve) continue;
     else if (metric.curve) {
       ReferencePoints curve = read_reference(*metric.curve);
       reference.x = std::move(curve.x), reference.y = std::move(curve.y);
@@ -301,12 +315,12 @@ void find_deviations(StudyResult& result) {
     if (!all_done(outcome)) continue;
     for (const auto& [name, reference] : result.reference) {
       const auto& metric = result.study.metrics.at(name);
-      const bool exact = metric.value || metric.curve;
+      const bool exact = metric.has_own_reference();
       const auto others = exact ? std::vector<const Metric*>{&reference} : metrics_of(result.finest(), name);
       Deviation& own = outcome.deviations[name] =
           deviation(result, metrics_of(outcome, name), others, result.scale.at(name));
       // The finest variant is the reference.
-      if (!exact && &outcome == &result.finest()) own.error = 0, own.standard_error = 0;
+      if (!exact && result.is_finest(outcome)) own.error = 0, own.standard_error = 0;
     }
     for (const auto& [name, one] : outcome.deviations)
       if (outcome.worst.empty() || one.error > outcome.of_worst().error) outcome.worst = name;
@@ -384,7 +398,37 @@ Description to_json(const std::map<std::string, Deviation>& deviations) {
   return json;
 }
 
+std::string sweep_csv(const StudyResult& result) {
+  std::string text = "variant";
+  for (const auto& [name, setting] : result.study.settings) text += ',' + quoted_cell(name);
+  text += ",metric,unit,mean,standard_error,standard_deviation,difference,core_seconds,steps,samples_done,samples\n";
+  for (const VariantResult& one : result.variants) {
+    std::string head = quoted_cell(one.variant.name);
+    std::size_t k = 0;
+    for (const auto& [name, setting] : result.study.settings)
+      head += ',' + quoted_cell(setting.label(one.variant.levels[k++]));
+    const auto done = std::ranges::count(one.samples, "done", &Sample::status);
+    for (const auto& [name, metric] : result.study.metrics) {
+      if (metric.is_curve()) continue;
+      const auto found = one.values.find(name);
+      const Value value = found == one.values.end() ? Value{unknown, unknown, "", 1} : found->second;
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", head, quoted_cell(name), quoted_cell(value.unit),
+                          value.mean, value.standard_error(), value.scatter,
+                          metric.value ? value.mean - *metric.value : unknown, one.core_seconds, one.steps, done,
+                          one.samples.size());
+    }
+  }
+  return text;
+}
+
 }  // namespace
+
+std::size_t StudyResult::count(const char* status) const {
+  std::size_t all = 0;
+  for (const VariantResult& one : variants)
+    all += static_cast<std::size_t>(std::ranges::count(one.samples, status, &Sample::status));
+  return all;
+}
 
 double StudyResult::scatter(double computed) const { return !alike ? computed : random ? unknown : 0; }
 
@@ -395,7 +439,8 @@ Confidence VariantResult::confidence(double tolerance) const {
   return worst;
 }
 
-StudyResult evaluate_study(StudyDescription study, const std::filesystem::path& folder) {
+StudyResult evaluate_study(StudyDescription study, const std::filesystem::path& folder,
+                           const std::set<std::filesystem::path>& omitted) {
   StudyResult result;
   result.study = std::move(study);
   result.scenario = scenario_type(Document::load(result.study.scene));
@@ -404,6 +449,10 @@ StudyResult evaluate_study(StudyDescription study, const std::filesystem::path& 
     outcome.variant = std::move(variant);
     for (const double seed : result.study.seeds.values) {
       const auto own = folder / folder_of(outcome.variant, seed);
+      if (omitted.contains(own)) {
+        outcome.samples.emplace_back().seed = seed, outcome.samples.back().status = "missing";
+        continue;
+      }
       const Sample& sample = outcome.samples.emplace_back(read_sample(result.study, seed, own));
       if (!sample.revision.empty()) result.revisions.insert(sample.revision);
       if (const auto run = result.parts.empty() ? read_run_json(own) : std::nullopt;
@@ -417,6 +466,7 @@ StudyResult evaluate_study(StudyDescription study, const std::filesystem::path& 
   for (VariantResult& outcome : result.variants) find_costs(outcome), find_values(result, outcome);
   find_references(result);
   find_deviations(result);
+  if (result.study.is_sweep()) return result;
   find_effects(result);
   find_front(result);
   find_cheapest(result);
@@ -430,7 +480,7 @@ Description to_json(const StudyResult& result) {
       {"scenario", result.scenario},
       {"parts", result.parts},
       {"tolerance", result.study.tolerance},
-      {"advice", result.study.advice},
+      {"purpose", result.study.purpose},
       {"samples", result.study.seeds.values.size()},
       {"of_samples", of_samples(result)},
       {"revisions", result.revisions},
@@ -450,9 +500,10 @@ Description to_json(const StudyResult& result) {
     json["metrics"][name] = {
         {"type", metric.what.type()},
         {"of", metric.of},
-        {"reference", metric.value   ? "value"
-                      : metric.curve ? "curve"
-                                     : "finest"},
+        {"reference", metric.value              ? "value"
+                      : metric.curve            ? "curve"
+                      : result.study.is_sweep() ? "none"
+                                                : "finest"},
         {"scale", result.scale.contains(name) ? Description(result.scale.at(name)) : Description()},
         {"not_charted", result.unevaluated.contains(name) ? Description(result.unevaluated.at(name)) : Description()}};
   for (const VariantResult& one : result.variants) {
@@ -460,7 +511,10 @@ Description to_json(const StudyResult& result) {
     std::size_t k = 0;
     for (const auto& [name, setting] : result.study.settings) levels[name] = setting.label(one.variant.levels[k++]);
     for (const auto& [name, value] : one.values)
-      values[name] = {{"mean", value.mean}, {"scatter", or_null(value.scatter)}, {"unit", value.unit}};
+      values[name] = {{"mean", value.mean},
+                      {"scatter", or_null(value.scatter)},
+                      {"standard_error", or_null(value.standard_error())},
+                      {"unit", value.unit}};
     for (const Sample& sample : one.samples)
       samples.push_back({{"seed", sample.seed},
                          {"folder", folder_of(one.variant, sample.seed).string()},
@@ -494,6 +548,7 @@ Description to_json(const StudyResult& result) {
 }
 
 std::string to_csv(const StudyResult& result) {
+  if (result.study.is_sweep()) return sweep_csv(result);
   std::string text = "variant";
   for (const auto& [name, setting] : result.study.settings) text += ',' + quoted_cell(name);
   text +=

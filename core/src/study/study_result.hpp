@@ -1,6 +1,7 @@
-// Results of a study: cost of the runs and their deviations from the reference.
+// Results of a study: cost of the runs, their metrics, and the deviations from a reference.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -20,8 +21,8 @@ namespace grit {
 /// One run: a variant with a seed.
 struct Sample {
   double seed = 0;
-  std::string status;  ///< "done", "failed" or "missing"; "failed" also if it lacks an evaluated metric, or ends before
-                       ///< the reference of a curve does
+  std::string status;    ///< "done", "failed", "under way" or "missing"; "failed" also if it lacks an evaluated metric,
+                         ///< or ends before the reference of a curve does; "under way" also if it was interrupted
   std::string message;   ///< why it failed
   std::string revision;  ///< of grit
   double core_seconds = 0, steps = 0, bodies = 0;
@@ -47,6 +48,16 @@ struct Value {
   double mean = 0;     ///< over samples
   double scatter = 0;  ///< standard deviation between samples; NaN for one sample
   std::string unit;
+  std::size_t samples = 1;
+
+  double standard_error() const { return scatter / std::sqrt(static_cast<double>(samples)); }
+};
+
+/// The mean curve of a metric over samples, where all of them have it.
+struct MeanCurve {
+  std::vector<double> x, mean, scatter;  ///< scatter: NaN for one sample
+  std::string unit, x_unit;
+  std::size_t samples = 1;
 };
 
 struct VariantResult {
@@ -54,7 +65,9 @@ struct VariantResult {
   std::vector<Sample> samples;
   double core_seconds = 0, steps = 0, particle_steps_per_core_second = 0;  ///< means of the finished samples
   double cost_scatter = std::numeric_limits<double>::quiet_NaN();          ///< standard deviation of core_seconds
-  std::map<std::string, Value> values;           ///< metrics with one value; empty if a sample failed
+  std::map<std::string, Value> values;           ///< metrics with one value; empty if a sample is not done, but in a
+                                                 ///< sweep of the samples that are
+  std::map<std::string, MeanCurve> curves;       ///< in a sweep, the other metrics of the samples that are done
   std::map<std::string, Deviation> deviations;   ///< by metric; empty if a sample failed
   std::string worst;                             ///< metric with the largest error
   bool on_front = false;                         ///< Pareto-optimal: no other is both cheaper and more accurate
@@ -88,18 +101,25 @@ struct StudyResult {
   std::vector<Effect> effects;
   std::optional<std::size_t> cheapest;  ///< cheapest variant within the tolerance, certain or likely
 
+  /// In a study of accuracy.
   const VariantResult& finest() const { return variants.back(); }
+  bool is_finest(const VariantResult& one) const { return !study.is_sweep() && &one == &variants.back(); }
+  /// The number of runs with this status, and of all.
+  std::size_t count(const char* status) const;
+  std::size_t runs() const { return variants.size() * study.seeds.values.size(); }
   /// Corrects a scatter computed from samples that are identical: 0 if the scene is not random, NaN if it is, as all
   /// samples then count as one.
   double scatter(double computed) const;
 };
 
-/// Evaluates the runs below `folder`. Throws FileError if a finished run lacks a channel.
-StudyResult evaluate_study(StudyDescription study, const std::filesystem::path& folder);
+/// Evaluates the runs below `folder`; those in `omitted` count as missing. Throws FileError if a finished run lacks a
+/// channel.
+StudyResult evaluate_study(StudyDescription study, const std::filesystem::path& folder,
+                           const std::set<std::filesystem::path>& omitted = {});
 
 /// study.json: all of the above except curves.
 Description to_json(const StudyResult& result);
-/// One row per variant and metric.
+/// One row per variant and metric. Of a sweep the mean, its standard error, and the difference from a given value.
 std::string to_csv(const StudyResult& result);
 
 }  // namespace grit

@@ -29,7 +29,49 @@ std::string passed_over(const StudyResult& result) {
 
 }  // namespace
 
-std::string word_for_error(const StudyDescription& study) { return study.advice ? "error" : "difference"; }
+std::string deviation_title(const StudyDescription& study, const std::string& metric) {
+  if (!metric.empty())
+    return study.metrics.at(metric).has_own_reference() ? "difference of " + metric + " from its reference"
+                                                        : "error of " + metric;
+  return study.compares_with_finest() ? "largest error of all metrics"
+                                      : "largest difference of all metrics from their references";
+}
+
+std::string of_progress(const StudyResult& result) {
+  const std::size_t done = result.count("done");
+  if (done == result.runs()) return "";
+  std::string text = fmt::format("{} of {} runs are done", done, result.runs());
+  for (const char* status : {"under way", "missing", "failed"}) {
+    std::vector<std::string> names;
+    for (const VariantResult& one : result.variants)
+      for (const Sample& sample : one.samples)
+        if (sample.status == status) names.push_back(fmt::format("{}, seed {:.0f}", one.variant.name, sample.seed));
+    if (!names.empty()) text += fmt::format("; {} {}: {}", names.size(), status, fmt::join(names, "; "));
+  }
+  return text + '.';
+}
+
+namespace {
+
+/// For each metric with a given value the variant that is closest to it.
+std::string closest(const StudyResult& result) {
+  std::vector<std::string> sentences;
+  for (const auto& [name, metric] : result.study.metrics) {
+    if (!metric.value) continue;
+    const VariantResult* best = nullptr;
+    const auto apart = [&](const VariantResult& one) { return std::abs(one.values.at(name).mean - *metric.value); };
+    for (const VariantResult& one : result.variants)
+      if (one.values.contains(name) && (best == nullptr || apart(one) < apart(*best))) best = &one;
+    if (best == nullptr) continue;
+    const Value& value = best->values.at(name);
+    sentences.push_back(
+        fmt::format("{} is closest to {:g} with {}: {:.4g} ± {}.", name, *metric.value, best->variant.name, value.mean,
+                    std::isfinite(value.standard_error()) ? fmt::format("{:.2g}", value.standard_error()) : "?"));
+  }
+  return fmt::format("{}", fmt::join(sentences, " "));
+}
+
+}  // namespace
 
 std::vector<std::string> not_evaluated(const StudyResult& result) {
   std::map<std::string, std::vector<std::string>> by_reason;
@@ -52,6 +94,8 @@ std::string finer_that_is_not(const StudyResult& result, const VariantResult& on
   return "";
 }
 
+namespace {
+
 std::string verdict_of_metrics(const StudyResult& result) {
   if (result.reference.empty()) {
     const bool failed = std::ranges::any_of(result.finest().samples, [](const auto& s) { return s.status != "done"; });
@@ -73,15 +117,16 @@ std::string verdict_of_metrics(const StudyResult& result) {
       passed_over(result);
   if (!result.cheapest) return text + "No variant keeps all metrics within " + tolerance + "." + more;
   const VariantResult& best = result.variants[*result.cheapest];
-  if (&best == &result.finest())
+  const bool with_finest = result.study.compares_with_finest();
+  if (with_finest && &best == &result.finest())
     return text + "No variant cheaper than the finest settings keeps all metrics within " + tolerance + "." + more;
   const Deviation& worst = best.of_worst();
   text +=
       fmt::format("Cheapest within {}: {}, {} on one core", tolerance, best.variant.name, cost_text(best.core_seconds));
-  if (result.finest().core_seconds > 0)
+  if (with_finest && result.finest().core_seconds > 0)
     text += ", " + ratio_text(result.finest().core_seconds / best.core_seconds) + " times cheaper than the finest";
-  text += fmt::format("; its largest error is {} ± {} ({}).", percent(worst.error), percent(worst.standard_error),
-                      best.worst);
+  text += fmt::format("; its largest {} is {} ± {} ({}).", with_finest ? "error" : "difference", percent(worst.error),
+                      percent(worst.standard_error), best.worst);
   std::vector<std::string> doubtful;
   for (const auto& [name, one] : best.deviations)
     if (confidence(one.error, one.standard_error, result.study.tolerance) != Confidence::certain)
@@ -93,6 +138,8 @@ std::string verdict_of_metrics(const StudyResult& result) {
     text += fmt::format(" This is not certain because {}, which is finer, is not; use more seeds.", best.decided_by);
   return text + passed_over(result);
 }
+
+}  // namespace
 
 std::string of_samples(const StudyResult& result) {
   const bool several = result.study.seeds.values.size() > 1;
@@ -125,9 +172,9 @@ std::string of_order(const StudyResult& result) {
 }
 
 std::string verdict(const StudyResult& result) {
-  std::string text = verdict_of_metrics(result);
-  for (const std::string& more : {of_samples(result), of_order(result)})
-    if (!more.empty()) text += ' ' + more;
+  std::string text = result.study.is_sweep() ? closest(result) : verdict_of_metrics(result);
+  for (const std::string& more : {of_progress(result), of_samples(result), of_order(result)})
+    if (!more.empty()) text += (text.empty() ? "" : " ") + more;
   return text;
 }
 

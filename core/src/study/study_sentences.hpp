@@ -10,8 +10,9 @@ struct StudyResult;
 struct StudyDescription;
 struct VariantResult;
 
-/// The word for a deviation from the finest: "error", or "difference" if the study varies model parameters.
-std::string word_for_error(const StudyDescription& study);
+/// What a study of accuracy compares: "error of peak", or "difference of peak from its reference" if the description
+/// gives the reference. `metric`: empty for the largest of all metrics.
+std::string deviation_title(const StudyDescription& study, const std::string& metric);
 
 /// The metrics that could not be evaluated, one line per reason: "peak, end: its reference is 0 …".
 std::vector<std::string> not_evaluated(const StudyResult& result);
@@ -27,7 +28,11 @@ std::string of_samples(const StudyResult& result);
 /// empty if there are none.
 std::string of_order(const StudyResult& result);
 
-/// The conclusion in sentences: the cheapest variant within the tolerance, its saving, and uncertainties.
+/// How many runs are done, and which are failed, under way or missing; empty if all are done.
+std::string of_progress(const StudyResult& result);
+
+/// The conclusion in sentences: the cheapest variant within the tolerance, its saving, and uncertainties; of a sweep
+/// the variants closest to given values.
 std::string verdict(const StudyResult& result);
 
 }  // namespace grit

@@ -15,19 +15,23 @@ std::vector<Variant> variants(const StudyDescription& study) {
   for (const auto& [name, setting] : study.settings)
     usual.push_back(setting.usual_level()), finest.push_back(setting.finest_level());
 
+  const bool crossed = study.vary != "one-at-a-time";
+  // No level of a plain sweep is special.
+  const bool plain = study.is_sweep() && (crossed || study.settings.size() == 1);
   std::vector<Variant> all;
   const auto add = [&](const std::vector<std::size_t>& levels) {
     if (std::ranges::any_of(all, [&](const Variant& other) { return other.levels == levels; })) return;
     std::string name;
     std::size_t k = 0;
     for (const auto& [setting_name, setting] : study.settings) {
-      if (levels[k] != usual[k]) name += (name.empty() ? "" : ", ") + setting_name + "=" + setting.label(levels[k]);
+      if (plain || levels[k] != usual[k])
+        name += (name.empty() ? "" : ", ") + setting_name + "=" + setting.label(levels[k]);
       ++k;
     }
     all.push_back({levels, name.empty() ? "usual" : name});
   };
-  add(usual);
-  if (study.vary == "one-at-a-time") {
+  if (!plain) add(usual);
+  if (!crossed) {
     std::size_t k = 0;
     for (const auto& [name, setting] : study.settings) {
       for (std::size_t level = 0; level < setting.levels(); ++level) {
@@ -45,6 +49,7 @@ std::vector<Variant> variants(const StudyDescription& study) {
       if (k < levels.size()) ++levels[k];
     }
   }
+  if (study.is_sweep()) return all;
   add(finest);
   const auto reference = std::ranges::find(all, finest, &Variant::levels);
   if (all.size() > 1 && reference->name != "usual") reference->name = "finest";
