@@ -8,10 +8,10 @@
 #include <thread>
 #include <utility>
 
+#include "app/estimate.hpp"
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
-#include "bodies/body_memory.hpp"
 #include "bodies/make_bodies.hpp"
 #include "description/current_scene.hpp"
 #include "format/duration.hpp"
@@ -50,17 +50,6 @@
 namespace grit {
 namespace {
 
-// Particle-steps/s of one thread: quick simulations reach 12 to 31 million, dense packings of 10 000 to 50 000 grains
-// 19 to 23 million on an AMD EPYC (Zen 4), see docs/evidence/estimates.md. Without AVX-512 they are about 1.5 times
-// slower.
-#ifdef __AVX512F__
-constexpr double planning_speed = 18e6;
-#else
-constexpr double planning_speed = 12e6;
-#endif
-// A cloud has no contacts yet; in a dense packing the critical step of the same grains is about this fraction of the
-// cloud's.
-constexpr double dense_step_fraction = 0.6;
 // Per body: a coordination number of 5, and some contacts with walls.
 constexpr double dense_contacts = 2.7;
 
@@ -153,16 +142,12 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
             << '\n';
   const TimeStepDescription& wish = description.time_step;
   const double safe = wish.safety * kernel.critical_time_step();
-  const bool cloud = kernel.state().pairs.touching_count() * 2 < bodies;
-  const double dt =
-      cloud && !wish.value ? std::min(kernel.world().dt(), dense_step_fraction * safe) : kernel.world().dt();
-  const std::vector<ExpectedStage> stages = expected_stages(scene, components, bodies, dt);
-  auto most_bodies = static_cast<double>(bodies);
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    most_bodies = std::max(most_bodies, stages[i].bodies);
+  const Estimate expected = estimate(scene, components, kernel);
+  const double dt = expected.dt, most_bodies = expected.most_bodies;
+  const std::vector<ExpectedStage>& stages = expected.stages;
+  for (std::size_t i = 0; i < stages.size(); ++i)
     if (stages[i].arriving > 0)
       std::cout << "  " << stages[i].arriving << " more in the stage " << description.stages[i].name << '\n';
-  }
   for (const ExpectedStream& stream : expected_streams(description, components)) {
     std::cout << "  stream " << stream.name << " from the stage " << stream.stage << ": " << stream.rate << " 1/s";
     if (std::isfinite(stream.limit)) std::cout << ", " << stream.limit << " in all";
@@ -179,8 +164,8 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   if (!wish.value && kernel.world().dt() < safe)
     std::cout << wish.steps_per_impact << " steps per impact of two bodies; ";
   std::cout << "updated as contacts change\n";
-  const auto memory_now = static_cast<double>(kernel.state().bytes());
-  const double memory_dense = bytes_per_body * most_bodies, memory_free = memory_now + available_memory();
+  const double memory_now = expected.memory_now, memory_dense = expected.memory_dense,
+               memory_free = memory_now + available_memory();
   std::cout << "memory: " << bytes_text(memory_now) << " now, about " << bytes_text(memory_dense) << " when dense; "
             << bytes_text(memory_free) << " are available\n";
   std::size_t triangles = 0;
@@ -202,12 +187,8 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     }
     return true;
   });
-  double least = 0, most = 0;  // s times bodies
-  bool all_known = true;
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const ExpectedStage& stage = stages[i];
-    const bool estimated = stage.known || stage.usual;
-    least += stage.least_body_time, most += stage.most_body_time, all_known &= estimated;
     std::cout << "  " << std::setw(16) << description.stages[i].name
               << (stage.known   ? ""
                   : stage.usual ? "usually "
@@ -217,11 +198,12 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
       std::cout << " (ends by its condition" << (stage.usual ? fmt::format(", {:g} s at most", stage.most) : "") << ')';
     std::cout << '\n';
   }
-  const double per_second = planning_speed * std::min(threads, std::max(1u, std::thread::hardware_concurrency()));
-  const auto cost = [&](double body_seconds) { return body_seconds / dt / per_second; };
+  const double per_second = planning_speed(std::min(threads, std::max(1u, std::thread::hardware_concurrency())));
+  const double least = expected.least_body_time, most = expected.most_body_time;
+  const auto cost = [&](double body_time) { return expected.seconds(body_time, per_second); };
   std::cout << "\nestimated time on " << threads << (threads == 1 ? " thread" : " threads") << " at "
             << 1e-6 * per_second << " M particle-steps/s: " << hours_text(cost(least))
-            << (all_known ? "" : " at least (the end of a stage without typical_time is unknown)");
+            << (expected.all_known ? "" : " at least (the end of a stage without typical_time is unknown)");
   if (most > least) std::cout << ", at most " << hours_text(cost(most)) << " if stages run to their limits";
   std::cout << '\n';
   std::vector<UnusedSetting> warnings;
