@@ -26,6 +26,8 @@ class Options {
 
   const std::vector<std::string>& words() const { return words_; }
   bool has(const char* name) const { return values_.count(name) > 0; }
+  /// Whether the command line has the option, not only its default.
+  bool given(const char* name) const { return has(name) && !values_[name].defaulted(); }
   template <class T>
   T get(const char* name) const {
     return values_[name].as<T>();

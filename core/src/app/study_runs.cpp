@@ -1,0 +1,348 @@
+#include "app/study_runs.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/dll/runtime_symbol_info.hpp>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <ranges>
+#include <set>
+#include <utility>
+
+#include "app/progress_bar.hpp"
+#include "app/run_setup.hpp"
+#include "description/placed_error.hpp"
+#include "grit/error.hpp"
+#include "grit/toolkit/did_you_mean.hpp"
+#include "input/places.hpp"
+#include "kernel/kernel.hpp"
+#include "output/checkpoint.hpp"
+#include "output/read_results.hpp"
+#include "output/reference_curve.hpp"
+#include "output/run_facts.hpp"
+#include "plugins/build_facts.hpp"
+#include "run/observer.hpp"
+#include "simulation/prepared_sample.hpp"
+
+namespace grit {
+namespace {
+
+/// The state of a run on disk.
+enum class Progressed {
+  nothing,  ///< no run, or one of another description, another grit or another build of a plugin
+  begun,    ///< interrupted or killed; can be resumed
+  lost,     ///< done, but its series is missing or unreadable
+  ended,    ///< done or failed numerically
+};
+
+/// Identifies plugins by kind, name and checksum, whatever their paths.
+std::set<std::string> builds(const Description& plugins) {
+  std::set<std::string> all;
+  for (const auto& plugin : plugins)
+    all.insert(plugin.value("kind", "") + ' ' + plugin.value("name", "") + ' ' +
+               plugin.value(Description::json_pointer("/build/checksum"), Description()).dump());
+  return all;
+}
+
+/// Whether a run of these facts left a complete checkpoint that this build can resume.
+bool can_resume(const std::filesystem::path& folder, const RunFacts& facts) {
+  try {
+    return last_checkpoint(folder, facts).has_value();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+bool has_series(const std::filesystem::path& folder) {
+  try {
+    const SeriesFile series(folder);
+    return true;
+  } catch (const FileError&) {
+    return false;
+  }
+}
+
+/// The state of the run of this description with these plugins in a folder.
+Progressed progressed(const std::filesystem::path& folder, const Description& description,
+                      const std::vector<PluginUsed>& plugins) {
+  const auto run = read_run_json(folder);
+  if (!run) return Progressed::nothing;
+  const auto says = [&](const char* pointer) { return run->value(Description::json_pointer(pointer), Description()); };
+  Description used = Description::array();
+  for (const PluginUsed& one : plugins) used.push_back(plugin_facts(one));
+  if (says("/description") != description || says("/grit/revision") != build_facts().revision ||
+      !says("/plugins").is_array() || builds(says("/plugins")) != builds(used))
+    return Progressed::nothing;
+  if (says("/status") == "failed") return Progressed::ended;
+  if (says("/status") == "done") return has_series(folder) ? Progressed::ended : Progressed::lost;
+  // The run.json of a killed run still has the status "running".
+  const bool stopped = says("/status") == "interrupted" || says("/status") == "running";
+  return stopped && can_resume(folder, {.description = description, .plugins = plugins}) ? Progressed::begun
+                                                                                         : Progressed::nothing;
+}
+
+/// Whether a description has all values of an older one; keys that the older one lacks are newer than it.
+bool has_all_of(const Description& now, const Description& then) {
+  if (now.is_object() && then.is_object()) {
+    for (const auto& [key, value] : then.items())
+      if (!now.contains(key) || !has_all_of(now.at(key), value)) return false;
+    return true;
+  }
+  if (now.is_array() && then.is_array()) return std::ranges::equal(now, then, has_all_of);
+  return now == then;
+}
+
+std::string lost_series(const std::filesystem::path& folder) {
+  return folder.string() + ": the run is done, but its series.h5 is missing or unreadable";
+}
+
+/// Does the work for a variant. A DescriptionError of a value that the study sets names the study and the variant.
+template <class Work>
+auto of_variant(const std::filesystem::path& file, const Variant& variant, const Work& work) {
+  try {
+    return work();
+  } catch (const DescriptionError& error) {
+    auto problems = error.problems();
+    for (Problem& problem : problems)
+      if (problem.file == "--set") problem.file = file.string() + ", " + variant.name;
+    throw DescriptionError(std::move(problems));
+  }
+}
+
+std::string pointer_of(const std::string& metric, const std::string& key) {
+  return "/metrics/" + pointer_token(metric) + '/' + key;
+}
+
+/// `; did you mean "color"? Allowed is one of color, view`
+std::string one_of(const std::string& found, const std::vector<std::string>& names) {
+  return did_you_mean(found, names, fmt::format("allowed is one of {}", fmt::join(names, ", ")));
+}
+
+/// Checks probes and reference files of the metrics before any run. Throws DescriptionError.
+void check_metrics(const StudyDescription& study, const Document& written, const SceneDescription& scene) {
+  std::vector<Problem> problems;
+  const auto probes = std::views::keys(scene.probes);
+  for (const auto& [name, metric] : study.metrics) {
+    if (metric.curve) try {
+        read_reference(*metric.curve);
+      } catch (const FileError& error) {
+        problems.push_back(
+            written.problem(pointer_of(name, "curve/file"), missing_file_text(error, metric.curve->file)));
+      }
+    for (const auto& [key, channel] : {std::pair("of", &metric.of), std::pair("against", &metric.against)}) {
+      const std::string probe = channel->substr(0, channel->find('/'));
+      if (probe.empty() || scene.probes.contains(probe)) continue;
+      problems.push_back(written.problem(pointer_of(name, key),
+                                         fmt::format("found the probe \"{}\", which is not in the scene", probe) +
+                                             one_of(probe, {probes.begin(), probes.end()})));
+    }
+  }
+  if (!problems.empty()) throw DescriptionError(std::move(problems));
+}
+
+/// Checks channels, which probes know only once they are bound to a world.
+void check_channels(const StudyDescription& study, const Document& written, const LiveScene& live,
+                    const Registry& registry) try {
+  const SceneDescription& scene = live.now();
+  const Components& components = live.components();
+  const Kernel kernel(scene, components, prepare(live, registry, run_state(scene, components)), 1);
+  std::vector<std::string> all;
+  std::set<std::string> wide;  // several values per sample
+  for (const auto& [name, probe] : scene.probes) {
+    for (const char* channel : {"time", "step"}) all.push_back(name + '/' + channel);
+    for (const Channel& channel : Observer(name, probe, components.probes.at(name), kernel.world()).group().channels) {
+      all.push_back(name + '/' + channel.name);
+      if (std::ranges::any_of(channel.shape, [](std::size_t n) { return n != 1; })) wide.insert(all.back());
+    }
+  }
+  std::vector<Problem> problems;
+  for (const auto& [name, metric] : study.metrics) {
+    const bool profile = std::holds_alternative<ProfileMetric>(metric.what.value());
+    for (const auto& [key, channel] : {std::pair("of", metric.of), std::pair("against", metric.against)}) {
+      if (channel.empty()) continue;
+      const std::string probe = channel.substr(0, channel.find('/') + 1);
+      std::vector<std::string> own;
+      std::ranges::copy_if(all, std::back_inserter(own), [&](const auto& one) { return one.starts_with(probe); });
+      if (std::ranges::find(own, channel) == own.end())
+        problems.push_back(written.problem(
+            pointer_of(name, key),
+            fmt::format("found \"{}\", which is not a channel of the probe", channel) + one_of(channel, own)));
+      else if (!profile && wide.contains(channel))
+        problems.push_back(
+            written.problem(pointer_of(name, key),
+                            fmt::format("found \"{}\", which has several values per sample; allowed is a channel with "
+                                        "one value, or the type profile",
+                                        channel)));
+    }
+  }
+  if (!problems.empty()) throw DescriptionError(std::move(problems));
+} catch (const NumericsError&) {
+  // If the usual settings fail at once, other variants may not.
+}
+
+/// Calls `work(variant, seed, folder within the study)` for every run. Throws UsageError if two have the same folder.
+template <class Work>
+void for_each_run(const StudyPlace& place, const Work& work) {
+  std::set<std::filesystem::path> folders;
+  for (const Variant& variant : variants(place.study))
+    for (const double seed : place.study.seeds.values) {
+      const auto within = folder_of(variant, seed);
+      if (!folders.insert(within).second)
+        throw UsageError("two variants would both write to " + (place.out / within).string() +
+                         "; give their levels labels that differ in more than punctuation");
+      work(variant, seed, within);
+    }
+}
+
+/// A scene of the study, and its description as in run.json, whose numbers were converted to text.
+struct VariantScene {
+  Scene scene;
+  std::string text;
+  Description description;
+};
+
+VariantScene scene_of(const StudyPlace& place, const Variant& variant, double seed, const Registry& registry) {
+  VariantScene one{
+      of_variant(place.file, variant,
+                 [&] { return load_scene(place.study.scene, sets_of(place.study, variant, seed), registry); }),
+      {},
+      {}};
+  one.text = resolved(*one.scene.description).dump();
+  one.description = Description::parse(one.text);
+  return one;
+}
+
+/// Shows how many runs are checked.
+class CheckedRuns {
+ public:
+  CheckedRuns(const StudyPlace& place, bool quiet)
+      : all_(variants(place.study).size() * place.study.seeds.values.size()), quiet_(quiet) {}
+  void next() {
+    if (!quiet_ && checked_ > 0 && line_.is_due()) line_.show(fmt::format("{} of {} runs checked", checked_, all_));
+    ++checked_;
+  }
+  std::size_t count() const { return checked_; }
+  void end() { line_.end(); }
+
+ private:
+  std::size_t all_, checked_ = 0;
+  bool quiet_;
+  ProgressLine line_;
+};
+
+}  // namespace
+
+RunProgram run_program(const Options& options) {
+  RunProgram with{boost::dll::program_location().string(), options.threads()};
+  // Another machine may have neither this variable nor this working directory.
+  std::vector<std::string> folders = options.list("plugin-path");
+  const char* const more = std::getenv("GRIT_PLUGIN_PATH");
+  for (const auto part : std::views::split(std::string_view(more == nullptr ? "" : more), ':'))
+    if (!part.empty()) folders.emplace_back(part.begin(), part.end());
+  for (const std::string& folder : folders)
+    with.plugin_paths.push_back(std::filesystem::absolute(folder).lexically_normal().string());
+  return with;
+}
+
+std::vector<StudyRun> missing_runs(const StudyPlace& place, const Options& options, const Registry& registry,
+                                   std::size_t& all,
+                                   const std::function<void(const LiveScene&, const Scene&)>& each_variant) {
+  const StudyDescription& study = place.study;
+  std::vector<StudyRun> runs;
+  std::map<std::string, std::string> described;  // variants by the description of their first sample
+  std::string measured;                          // the variant that each_variant has seen last
+  const RunProgram program = run_program(options);
+  const Document written = Document::load(place.file);
+  CheckedRuns line(place, options.has("quiet"));
+  for_each_run(place, [&](const Variant& variant, double seed, const std::filesystem::path& within) {
+    line.next();
+    const auto folder = place.out / within;
+    const VariantScene one = scene_of(place, variant, seed, registry);
+    const auto live = of_variant(place.file, variant, [&] { return std::make_unique<LiveScene>(one.scene); });
+    check_metrics(study, written, *one.scene.description);
+    if (seed == study.seeds.values.front())
+      if (const auto [other, is_new] = described.emplace(one.text, variant.name); !is_new)
+        throw DescriptionError({written.problem(
+            "/settings", fmt::format("found {} and {}, which are the same run; allowed are levels with different "
+                                     "values",
+                                     other->second, variant.name))});
+    if (line.count() == 1)
+      of_variant(place.file, variant,
+                 [&] { at_its_place(one.scene.document, [&] { check_channels(study, written, *live, registry); }); });
+    const Progressed so_far = progressed(folder, one.description, plugins_used(*one.scene.description, registry));
+    if (so_far == Progressed::ended) return;
+    if (so_far == Progressed::lost) std::cerr << "grit: " << lost_series(folder) << "; it is run again" << std::endl;
+    if (each_variant && std::exchange(measured, variant.name) != variant.name)
+      of_variant(place.file, variant,
+                 [&] { at_its_place(one.scene.document, [&] { each_variant(*live, one.scene); }); });
+    runs.push_back(
+        {fmt::format("{}, seed {:.0f}", variant.name, seed), within, folder,
+         run_words(program, study.scene, folder, sets_of(study, variant, seed), so_far == Progressed::begun)});
+  });
+  line.end();
+  all = line.count();
+  return runs;
+}
+
+std::map<std::filesystem::path, std::string> unusable_runs(const StudyPlace& place, const Options& options,
+                                                           const Registry& registry) {
+  std::map<std::filesystem::path, std::string> unusable;
+  const Document written = Document::load(place.file);
+  CheckedRuns line(place, options.has("quiet"));
+  for_each_run(place, [&](const Variant& variant, double seed, const std::filesystem::path& within) {
+    line.next();
+    const VariantScene one = scene_of(place, variant, seed, registry);
+    check_metrics(place.study, written, *one.scene.description);
+    const auto folder = place.out / within;
+    const auto run = read_run_json(folder);
+    if (!run || !run->contains("description")) return;
+    if (run->value("status", "") == "done" && !has_series(folder)) unusable[folder] = lost_series(folder);
+    else if (!has_all_of(one.description, run->at("description")))
+      unusable[folder] = folder.string() +
+                         ": holds a run of another description:" + differences(one.description, run->at("description"));
+  });
+  line.end();
+  return unusable;
+}
+
+ExitStatus do_only(const StudyPlace& place, const std::string& within, const Options& options,
+                   const Registry& registry) {
+  const auto wanted = (std::filesystem::path(within) / "").lexically_normal().parent_path();
+  std::optional<std::pair<Variant, double>> found;
+  std::vector<std::string> names;
+  for_each_run(place, [&](const Variant& variant, double seed, const std::filesystem::path& own) {
+    names.push_back(own.string());
+    if (own == wanted) found = {variant, seed};
+  });
+  if (!found)
+    throw UsageError("--only takes the folder of a run of the study, not \"" + within + '"' +
+                     did_you_mean(within, names, "such as " + names.front()));
+  const auto& [variant, seed] = *found;
+  const auto folder = place.out / wanted;
+  const VariantScene one = scene_of(place, variant, seed, registry);
+  const Progressed so_far = progressed(folder, one.description, plugins_used(*one.scene.description, registry));
+  if (so_far == Progressed::ended) {
+    const auto run = read_run_json(folder);
+    const bool done = run && run->value("status", "") == "done";
+    std::cout << folder.string() << (done ? ": already complete\n" : ": has failed already; see run.json there\n");
+    return done ? ExitStatus::done : ExitStatus::numerics;
+  }
+  const auto words = run_words(run_program(options), place.study.scene, folder, sets_of(place.study, variant, seed),
+                               so_far == Progressed::begun);
+  std::vector<char*> arguments;
+  for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  std::cout.flush();
+  // In place of this process, so that signals of a scheduler reach the run.
+  ::execv(arguments.front(), arguments.data());
+  throw FileError(words.front() + " cannot be started: " + std::strerror(errno));
+}
+
+}  // namespace grit
