@@ -38,6 +38,7 @@ std::string deviation_title(const StudyDescription& study, const std::string& me
 }
 
 std::string of_progress(const StudyResult& result) {
+  constexpr std::size_t most_named = 10;
   const std::size_t done = result.count("done");
   if (done == result.runs()) return "";
   std::string text = fmt::format("{} of {} runs are done", done, result.runs());
@@ -46,7 +47,10 @@ std::string of_progress(const StudyResult& result) {
     for (const VariantResult& one : result.variants)
       for (const Sample& sample : one.samples)
         if (sample.status == status) names.push_back(fmt::format("{}, seed {:.0f}", one.variant.name, sample.seed));
-    if (!names.empty()) text += fmt::format("; {} {}: {}", names.size(), status, fmt::join(names, "; "));
+    if (names.empty()) continue;
+    const std::size_t count = names.size();
+    if (count > most_named) names.resize(most_named), names.push_back("…");
+    text += fmt::format("; {} {}: {}", count, status, fmt::join(names, "; "));
   }
   return text + '.';
 }

@@ -28,7 +28,7 @@ std::string of_samples(const StudyResult& result);
 /// empty if there are none.
 std::string of_order(const StudyResult& result);
 
-/// How many runs are done, and which are failed, under way or missing; empty if all are done.
+/// How many runs are done, and which are failed, under way or missing, ten of each; empty if all are done.
 std::string of_progress(const StudyResult& result);
 
 /// The conclusion in sentences: the cheapest variant within the tolerance, its saving, and uncertainties; of a sweep
