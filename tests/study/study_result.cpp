@@ -390,10 +390,12 @@ TEST_F(Charts, AValueThatARunDoesNotReachIsAFailureOfThatRun) {
 
 TEST_F(Charts, ARunJsonThatLacksItsKeysIsNoRun) {
   make_all();
-  for (const char* text : {"{}", R"({"status": 3, "message": []})", R"({"status": "run)", R"({"status": "running"})"}) {
+  for (const char* text : {"{}", R"({"status": 3, "message": []})", R"({"status": "run)"}) {
     folder.write("runs/usual/seed-2/run.json", text);
     EXPECT_EQ(result().variants[0].samples[1].status, "missing") << text;
   }
+  folder.write("runs/usual/seed-2/run.json", R"({"status": "running"})");
+  EXPECT_EQ(result().variants[0].samples[1].status, "under way");
 }
 
 TEST_F(Charts, CurvesOfTheFinestHaveToShareTheirAbscissa) {
