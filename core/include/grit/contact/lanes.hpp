@@ -264,6 +264,16 @@ template <class Mask>
   c = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7), d = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
 }
 
+/// The even, or odd, lanes of two registers of eight numbers, in turn.
+template <class Numbers>
+[[gnu::always_inline]] inline Numbers even_lanes(const Numbers& a, const Numbers& b) {
+  return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+}
+template <class Numbers>
+[[gnu::always_inline]] inline Numbers odd_lanes(const Numbers& a, const Numbers& b) {
+  return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+}
+
 /// Loads lanes in the precision of L from doubles in memory, and stores them.
 template <class L>
 [[gnu::always_inline]] inline L load_lanes(const double* from) {
@@ -349,11 +359,18 @@ template <class L, class Address>
     const auto q = quads(0);
     return {L(q.x), L(q.y), L(q.z), L(q.w)};
   } else if constexpr (width == 8) {
-    const auto p = quads(0), q = quads(4);
-    const auto join = [](const Quad& low, const Quad& high) {
-      return L(typename L::Numbers(__builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7)));
+    // Rows 0 and 2 share a register, so that two shuffles a column, not five, transpose all eight.
+    const auto pair = [&](std::size_t k) __attribute__((always_inline)) {
+      return __builtin_shufflevector(load(k), load(k + 2), 0, 1, 2, 3, 4, 5, 6, 7);
     };
-    return {join(p.x, q.x), join(p.y, q.y), join(p.z, q.z), join(p.w, q.w)};
+    const auto r02 = pair(0), r13 = pair(1), r46 = pair(4), r57 = pair(5);
+    const auto xz = detail::even_lanes(r02, r13), yw = detail::odd_lanes(r02, r13);
+    const auto more_xz = detail::even_lanes(r46, r57), more_yw = detail::odd_lanes(r46, r57);
+    using Numbers = typename L::Numbers;
+    return {L(Numbers(__builtin_shufflevector(xz, more_xz, 0, 1, 4, 5, 8, 9, 12, 13))),
+            L(Numbers(__builtin_shufflevector(yw, more_yw, 0, 1, 4, 5, 8, 9, 12, 13))),
+            L(Numbers(__builtin_shufflevector(xz, more_xz, 2, 3, 6, 7, 10, 11, 14, 15))),
+            L(Numbers(__builtin_shufflevector(yw, more_yw, 2, 3, 6, 7, 10, 11, 14, 15)))};
   } else {
     const auto column = [&](std::size_t c) { return L([&](std::size_t k) { return address(k)[c]; }); };
     return {column(0), column(1), column(2), column(3)};
@@ -379,10 +396,18 @@ template <class L, class Store>
   } else if constexpr (width == 4) {
     four(0, x.numbers, y.numbers, z.numbers, w.numbers);
   } else if constexpr (width == 8) {
-    const auto low = [](const L& a) { return Quad(__builtin_shufflevector(a.numbers, a.numbers, 0, 1, 2, 3)); };
-    const auto high = [](const L& a) { return Quad(__builtin_shufflevector(a.numbers, a.numbers, 4, 5, 6, 7)); };
-    four(0, low(x), low(y), low(z), low(w));
-    four(4, high(x), high(y), high(z), high(w));
+    const auto xy = detail::even_lanes(x.numbers, y.numbers), more_xy = detail::odd_lanes(x.numbers, y.numbers);
+    const auto zw = detail::even_lanes(z.numbers, w.numbers), more_zw = detail::odd_lanes(z.numbers, w.numbers);
+    const auto four_rows = [&](std::size_t first, auto even, auto odd) __attribute__((always_inline)) {
+      store(first, Quad(__builtin_shufflevector(even, even, 0, 1, 2, 3)));
+      store(first + 1, Quad(__builtin_shufflevector(odd, odd, 0, 1, 2, 3)));
+      store(first + 2, Quad(__builtin_shufflevector(even, even, 4, 5, 6, 7)));
+      store(first + 3, Quad(__builtin_shufflevector(odd, odd, 4, 5, 6, 7)));
+    };
+    four_rows(0, __builtin_shufflevector(xy, zw, 0, 1, 8, 9, 2, 3, 10, 11),
+              __builtin_shufflevector(more_xy, more_zw, 0, 1, 8, 9, 2, 3, 10, 11));
+    four_rows(4, __builtin_shufflevector(xy, zw, 4, 5, 12, 13, 6, 7, 14, 15),
+              __builtin_shufflevector(more_xy, more_zw, 4, 5, 12, 13, 6, 7, 14, 15));
   } else {
     for (std::size_t k = 0; k < width; ++k) store(k, Quad{x[k], y[k], z[k], w[k]});
   }
