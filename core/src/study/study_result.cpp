@@ -398,27 +398,41 @@ Description to_json(const std::map<std::string, Deviation>& deviations) {
   return json;
 }
 
-std::string sweep_csv(const StudyResult& result) {
+/// A table of variants × metrics: the name of the variant, the level of each setting, and the metric, then the cells of
+/// `row(variant, metric's name, metric)`, or no row if these are empty.
+template <class Row>
+std::string rows_of_variants(const StudyResult& result, std::string_view columns, Row row) {
   std::string text = "variant";
   for (const auto& [name, setting] : result.study.settings) text += ',' + quoted_cell(name);
-  text += ",metric,unit,mean,standard_error,standard_deviation,difference,core_seconds,steps,samples_done,samples\n";
+  text += fmt::format(",metric,{}\n", columns);
   for (const VariantResult& one : result.variants) {
     std::string head = quoted_cell(one.variant.name);
     std::size_t k = 0;
     for (const auto& [name, setting] : result.study.settings)
       head += ',' + quoted_cell(setting.label(one.variant.levels[k++]));
-    const auto done = std::ranges::count(one.samples, "done", &Sample::status);
-    for (const auto& [name, metric] : result.study.metrics) {
-      if (metric.is_curve()) continue;
-      const auto found = one.values.find(name);
-      const Value value = found == one.values.end() ? Value{unknown, unknown, "", 1} : found->second;
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", head, quoted_cell(name), quoted_cell(value.unit),
-                          value.mean, value.standard_error(), value.scatter,
-                          metric.value ? value.mean - *metric.value : unknown, one.core_seconds, one.steps, done,
-                          one.samples.size());
-    }
+    for (const auto& [name, metric] : result.study.metrics)
+      if (const std::string cells = row(one, name, metric); !cells.empty())
+        text += fmt::format("{},{},{}\n", head, quoted_cell(name), cells);
   }
   return text;
+}
+
+/// Runs that are done, and all of them.
+std::string counts_of_samples(const VariantResult& one) {
+  return fmt::format("{},{}", std::ranges::count(one.samples, "done", &Sample::status), one.samples.size());
+}
+
+std::string sweep_csv(const StudyResult& result) {
+  return rows_of_variants(
+      result, "unit,mean,standard_error,standard_deviation,difference,core_seconds,steps,samples_done,samples",
+      [](const VariantResult& one, const std::string& name, const MetricDescription& metric) -> std::string {
+        if (metric.is_curve()) return "";
+        const auto found = one.values.find(name);
+        const Value value = found == one.values.end() ? Value{unknown, unknown, "", 1} : found->second;
+        return fmt::format("{},{},{},{},{},{},{},{}", quoted_cell(value.unit), value.mean, value.standard_error(),
+                           value.scatter, metric.value ? value.mean - *metric.value : unknown, one.core_seconds,
+                           one.steps, counts_of_samples(one));
+      });
 }
 
 }  // namespace
@@ -549,28 +563,18 @@ Description to_json(const StudyResult& result) {
 
 std::string to_csv(const StudyResult& result) {
   if (result.study.is_sweep()) return sweep_csv(result);
-  std::string text = "variant";
-  for (const auto& [name, setting] : result.study.settings) text += ',' + quoted_cell(name);
-  text +=
-      ",metric,mean,error,standard_error,scatter,core_seconds,core_seconds_scatter,steps,particle_steps_per_core_s,"
-      "samples_"
-      "done,samples\n";
-  for (const VariantResult& one : result.variants) {
-    std::string head = quoted_cell(one.variant.name);
-    std::size_t k = 0;
-    for (const auto& [name, setting] : result.study.settings)
-      head += ',' + quoted_cell(setting.label(one.variant.levels[k++]));
-    const auto done = std::ranges::count(one.samples, "done", &Sample::status);
-    for (const auto& [name, metric] : result.study.metrics) {
-      const auto found = one.deviations.find(name);
-      Deviation metrics = found == one.deviations.end() ? Deviation() : found->second;
-      if (const auto value = one.values.find(name); value != one.values.end()) metrics.mean = value->second.mean;
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", head, quoted_cell(name), metrics.mean, metrics.error,
-                          metrics.standard_error, metrics.scatter, one.core_seconds, one.cost_scatter, one.steps,
-                          one.particle_steps_per_core_second, done, one.samples.size());
-    }
-  }
-  return text;
+  return rows_of_variants(
+      result,
+      "mean,error,standard_error,scatter,core_seconds,core_seconds_scatter,steps,particle_steps_per_core_s,"
+      "samples_done,samples",
+      [](const VariantResult& one, const std::string& name, const MetricDescription&) {
+        const auto found = one.deviations.find(name);
+        Deviation metrics = found == one.deviations.end() ? Deviation() : found->second;
+        if (const auto value = one.values.find(name); value != one.values.end()) metrics.mean = value->second.mean;
+        return fmt::format("{},{},{},{},{},{},{},{},{}", metrics.mean, metrics.error, metrics.standard_error,
+                           metrics.scatter, one.core_seconds, one.cost_scatter, one.steps,
+                           one.particle_steps_per_core_second, counts_of_samples(one));
+      });
 }
 
 }  // namespace grit
