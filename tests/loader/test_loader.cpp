@@ -1,9 +1,12 @@
 // Every check of the loader, each with a plugin that fails it and the text that says so.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <link.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -22,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
+using testing::AnyOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -151,6 +155,38 @@ TEST(Loader, RefusesWhatIsNotASharedLibrary) {
   EXPECT_THAT(error_of([&] { registry.make<BodyKind>("text"); }),
               AllOf(HasSubstr("body plugin \"text\" (" + directory.body("text").string() + "): cannot be opened"),
                     HasSubstr("invalid ELF header"), HasSubstr("build it with the function grit_plugin")));
+}
+
+/// The dynamic linker maps such a file, and the process ends where it reads behind its end.
+TEST(Loader, RefusesAFileThatWasCutOff) {
+  const Directory directory;
+  directory.copy_good("cut");
+  const Registry registry({directory.path()});
+  for (auto size = fs::file_size(directory.body("cut")) - 1; size > 0; size = size * 4 / 5) {
+    fs::resize_file(directory.body("cut"), size);
+    EXPECT_THAT(error_of([&] { registry.make<BodyKind>("cut"); }),
+                AllOf(HasSubstr("body plugin \"cut\" (" + directory.body("cut").string() + "): "),
+                      AnyOf(AllOf(HasSubstr("is incomplete: it has " + std::to_string(size) + " bytes"),
+                                  HasSubstr("copy or build the file again")),
+                            HasSubstr("cannot be opened"))))
+        << size;
+  }
+}
+
+/// Writes a number of two bytes into a file.
+void overwrite(const fs::path& file, std::streamoff offset, std::uint16_t number) {
+  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+  stream.seekp(offset).write(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+TEST(Loader, RefusesAFileOfAnotherMachine) {
+  const Directory directory;
+  directory.copy_good("other");
+  overwrite(directory.body("other"), offsetof(ElfW(Ehdr), e_machine), EM_S390);
+  const Registry registry({directory.path()});
+  EXPECT_THAT(error_of([&] { registry.make<BodyKind>("other"); }),
+              AllOf(HasSubstr("other.so): is of another machine: expected ELF class "),
+                    HasSubstr(", machine " + std::to_string(EM_S390) + "\n"), HasSubstr("for this machine")));
 }
 
 TEST(Loader, RefusesAnUndefinedSymbol) {

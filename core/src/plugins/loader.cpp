@@ -15,6 +15,7 @@
 #include "grit/error.hpp"
 #include "plugins/boundary.hpp"
 #include "plugins/build_facts.hpp"
+#include "plugins/elf_file.hpp"
 
 namespace grit {
 namespace {
@@ -114,6 +115,8 @@ const PluginInfo& load_plugin(const std::filesystem::path& file, const Kind& kin
     return PluginError(title + ": " + reason + "\n  " + remedy);
   };
 
+  if (const std::string fault = elf_fault(file); !fault.empty())
+    throw refuse(fault, "copy or build the file again, for this machine");
   ArithmeticWatch arithmetic;
   Library opened;
   std::error_code failed;

@@ -18,8 +18,8 @@ std::filesystem::path library_directory();
 /// use a plugin with the tag `found`. Reads `found` only as far as it has been verified.
 std::vector<std::string> mismatches(const BuildTag& expected, const BuildTag& found);
 
-/// Opens `file`, which is never closed again, and checks its PluginInfo, the build tag before anything else. Throws
-/// PluginError with the file and the remedy. Safe to call from several threads.
+/// Opens `file`, which is never closed again, if it is complete, and checks its PluginInfo, the build tag before
+/// anything else. Throws PluginError with the file and the remedy. Safe to call from several threads.
 const PluginInfo& load_plugin(const std::filesystem::path& file, const Kind& kind, const std::string& name);
 
 }  // namespace grit
