@@ -97,6 +97,24 @@ class Cases {
       std::get<ListTarget>(p.entries()[1].target()).append(inner);
     });
     declares("declare()", [](Interface& made, Parameters& p) { made.declare(p); });
+    call(
+        "choose()",
+        [](Interface& made) {
+          Parameters p, inner;
+          choice_of(made, p, inner).choose("way");
+        },
+        Refusal::allowed);
+    call("declare() of a choice", [](Interface& made) {
+      Parameters p, inner;
+      Choice& choice = choice_of(made, p, inner);
+      choice.choose("way");
+      choice.declare(inner);
+    });
+    call("when_read()", [](Interface& made) {
+      Parameters p;
+      made.declare(p);
+      p.calls_when_read().front()();
+    });
     return call("check of parameters", [](Interface& made) {
       Parameters p;
       made.declare(p);
@@ -111,6 +129,14 @@ class Cases {
   }
 
   std::vector<Case> all;
+
+ private:
+  /// The choice that `made` offers.
+  static Choice& choice_of(Interface& made, Parameters& p, Parameters& inner) {
+    made.declare(p);
+    std::get<OptionalTarget>(p.entries()[2].target()).create(inner);
+    return *inner.choice();
+  }
 };
 
 const std::string steel = "steel";
@@ -273,6 +299,23 @@ std::set<std::string> virtual_functions(const std::string& header) {
   for (std::sregex_iterator one(text.begin(), text.end(), declaration), end; one != end; ++one)
     names.insert((*one)[1].str() + "()");
   return names;
+}
+
+TEST(BoundaryOfParameters, IsThatOfTheChecksOfAChoiceAndOfItsTwin) {
+  const Registry registry({THROWING});
+  const auto made = registry.make<BodyKind>("throwing");
+  Parameters p, inner, of_twin;
+  made->declare(p);
+  std::get<OptionalTarget>(p.entries()[2].target()).create(inner);
+  inner.choice()->choose("way");
+  inner.choice()->declare(inner);
+  const auto twin = inner.choice()->twin();
+  twin->choose("way");
+  twin->declare(of_twin);
+  const Throwing throwing("check of parameters", "42");
+  for (Parameters* one : {&inner, &of_twin})
+    EXPECT_THAT([&] { one->checks().front().run({}); },
+                testing::ThrowsMessage<PluginError>(HasSubstr("its check of parameters threw")));
 }
 
 TEST(BoundaryOfParameters, IsThatOfChecksOfNestedObjects) {

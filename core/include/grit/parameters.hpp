@@ -186,7 +186,9 @@ class Parameters {
   }
   /// Declares that the key "type" of this object makes a choice. The parameters of the chosen type are keys of this
   /// object too; readers and writers have them declared after the choice.
-  void choose(Choice& choice) { choice_ = &choice; }
+  void choose(Choice& choice) { choice_ = {std::shared_ptr<void>(), &choice}; }
+  /// The same of a choice that this object keeps.
+  void choose(std::shared_ptr<Choice> choice) { choice_ = std::move(choice); }
 
   /// Declares a list of objects.
   template <Declarable T>
@@ -235,7 +237,7 @@ class Parameters {
   /// created. Writers add them to the object. They must outlive this object.
   void add_values(Description& values) { values_ = &values; }
 
-  Choice* choice() const { return choice_; }
+  Choice* choice() const { return choice_.get(); }
   const std::deque<Parameter>& entries() const { return entries_; }
   std::deque<Parameter>& entries() { return entries_; }
   const std::vector<Check>& checks() const { return checks_; }
@@ -243,11 +245,12 @@ class Parameters {
   bool is_open() const { return open_; }
   const std::vector<std::string>& keys_resolved_before() const { return resolved_before_; }
   const std::vector<std::function<void()>>& calls_when_read() const { return when_read_; }
+  std::vector<std::function<void()>>& calls_when_read() { return when_read_; }
   /// Null if there are none.
   Description* values() const { return values_; }
 
  private:
-  Choice* choice_ = nullptr;
+  std::shared_ptr<Choice> choice_;
   Description* values_ = nullptr;
   bool open_ = false;
   std::vector<std::string> resolved_before_;

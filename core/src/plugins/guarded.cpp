@@ -2,50 +2,23 @@
 
 #include <functional>
 #include <string_view>
-#include <tuple>
 #include <utility>
-#include <variant>
 
 #include "grit/toolkit/limited_fields.hpp"
 #include "plugins/boundary.hpp"
+#include "plugins/guarded_parameters.hpp"
 
 namespace grit {
 namespace {
 
-/// Calls `declare`, and guards the functions that it leaves in `parameters`: checks, and declarations of nested
-/// objects.
-void guard_declared(const std::string& title, std::string_view function, Parameters& parameters,
-                    const std::function<void()>& declare) {
-  const std::size_t first_entry = parameters.entries().size(), first_check = parameters.checks().size();
-  at_boundary(title, function, declare);
-  for (std::size_t i = first_check; i < parameters.checks().size(); ++i) {
-    auto& run = parameters.checks()[i].run;
-    run = [title, run = std::move(run)](const Complain& complain) {
-      at_boundary(title, "check of parameters", [&] { run(complain); });
-    };
-  }
-  const auto nested = [&title](auto& of_object) {
-    of_object = [title, inner = std::move(of_object)](auto&&... given) {
-      Parameters& own = std::get<sizeof...(given) - 1>(std::forward_as_tuple(given...));
-      guard_declared(title, "declare() of a nested object", own, [&] { inner(given...); });
-    };
-  };
-  for (std::size_t i = first_entry; i < parameters.entries().size(); ++i)
-    std::visit(
-        [&]<class T>(T& target) {
-          if constexpr (requires { target.create; }) nested(target.create);
-          if constexpr (requires { target.append; }) nested(target.append);
-          if constexpr (requires { target.insert; }) nested(target.insert);
-          if constexpr (requires { target.declare; }) nested(target.declare);
-        },
-        parameters.entries()[i].target());
-}
-
 /// What guarded components have in common.
 template <class Interface>
-class Guard {
+class Guard : public Interface {
  public:
   Guard(std::shared_ptr<Interface> made, std::string title) : made_(std::move(made)), title_(std::move(title)) {}
+  void declare(Parameters& parameters) final {
+    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
+  }
 
  protected:
   Interface& made() const { return *made_; }
@@ -58,8 +31,8 @@ class Guard {
   decltype(auto) guard_unless_refused(std::string_view function, Call&& call) const {
     return at_boundary_unless_refused(title_, function, std::forward<Call>(call));
   }
-  template <class Declare>
-  void guard_declaration(std::string_view function, Parameters& parameters, Declare&& declare) const {
+  void guard_declaration(std::string_view function, Parameters& parameters,
+                         const std::function<void()>& declare) const {
     guard_declared(title_, function, parameters, declare);
   }
   /// A checkpoint may be refused; saving has nothing to refuse.
@@ -74,12 +47,9 @@ class Guard {
   std::string title_;
 };
 
-class GuardedBodyKind final : public BodyKind, Guard<BodyKind> {
+class GuardedBodyKind final : public Guard<BodyKind> {
  public:
   using Guard::Guard;
-  void declare(Parameters& parameters) override {
-    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
-  }
   void prepare() override {
     guard_unless_refused("prepare()", [&] { made().prepare(); });
   }
@@ -94,12 +64,9 @@ class GuardedBodyKind final : public BodyKind, Guard<BodyKind> {
   }
 };
 
-class GuardedContactLaw final : public ContactLaw, Guard<ContactLaw> {
+class GuardedContactLaw final : public Guard<ContactLaw> {
  public:
   using Guard::Guard;
-  void declare(Parameters& parameters) override {
-    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
-  }
   void clear_materials() override {
     guard("clear_materials()", [&] { made().clear_materials(); });
   }
@@ -148,12 +115,9 @@ class GuardedContactLaw final : public ContactLaw, Guard<ContactLaw> {
   }
 };
 
-class GuardedEngine final : public Engine, Guard<Engine> {
+class GuardedEngine final : public Guard<Engine> {
  public:
   using Guard::Guard;
-  void declare(Parameters& parameters) override {
-    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
-  }
   Phase phase() const override {
     return guard("phase()", [&] { return made().phase(); });
   }
@@ -175,12 +139,9 @@ class GuardedEngine final : public Engine, Guard<Engine> {
   void serialize(Archive& archive) override { guard_serialize(archive); }
 };
 
-class GuardedGeometry final : public Geometry, Guard<Geometry> {
+class GuardedGeometry final : public Guard<Geometry> {
  public:
   using Guard::Guard;
-  void declare(Parameters& parameters) override {
-    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
-  }
   void prepare() override {
     guard_unless_refused("prepare()", [&] { made().prepare(); });
   }
@@ -214,12 +175,9 @@ class GuardedGeometry final : public Geometry, Guard<Geometry> {
   }
 };
 
-class GuardedProbe : public Probe, protected Guard<Probe> {
+class GuardedProbe : public Guard<Probe> {
  public:
   using Guard::Guard;
-  void declare(Parameters& parameters) override {
-    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
-  }
   StateRequest needs() const override {
     return guard("needs()", [&] { return made().needs(); });
   }
@@ -250,12 +208,9 @@ class GuardedLimitedProbe final : public GuardedProbe, public LimitedFields {
   const LimitedFields& limited_;  // the same probe
 };
 
-class GuardedScenario final : public Scenario, Guard<Scenario> {
+class GuardedScenario final : public Guard<Scenario> {
  public:
   using Guard::Guard;
-  void declare(Parameters& parameters) override {
-    guard_declaration("declare()", parameters, [&] { made().declare(parameters); });
-  }
   Description expand() const override {
     return guard_unless_refused("expand()", [&] { return made().expand(); });
   }

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -33,14 +34,32 @@ struct Part {
   }
 };
 
-/// Declares a nested object, a list of such, and a check.
+/// A way that a choice offers.
+struct Way {
+  static constexpr const char *type_name = "way", *type_doc = "the only one";
+  Way() { here("choose()"); }
+  void declare(grit::Parameters& p) {
+    here("declare() of a choice");
+    p.check([](const grit::Complain&) { here("check of parameters"); });
+  }
+};
+
+struct ChosenWay {
+  grit::OneOf<Way> one{"way"};
+  void declare(grit::Parameters& p) { p.choose(one); }
+};
+
+/// Declares a nested object, a list of such, a choice, a check and a function to be called when the object was read.
 inline void declare(const char* function, grit::Parameters& p) {
   here(function);
   static Part part;
   static std::deque<Part> parts;
   p.add("part", part);
   p.add("parts", parts);
+  static std::optional<ChosenWay> chosen;
+  p.add("way", chosen);
   p.check([](const grit::Complain&) { here("check of parameters"); });
+  p.when_read([] { here("when_read()"); });
 }
 
 /// The PluginInfo of a plugin whose make_ function is set by `set`.
