@@ -36,7 +36,7 @@ class Probe {
   /// Called once before the first sample. Throws ParameterError for parameters that do not fit the world, e.g. a wall
   /// that does not exist; its keys are those of the parameters.
   virtual void prepare(const World&) {}
-  /// The channels; identical at every call after prepare().
+  /// The channels; identical at every call after prepare(). No name is that of another, "time" or "step".
   virtual std::vector<Channel> channels() const = 0;
   /// Writes every value of every channel.
   virtual void sample(const World& world, ChannelValues& values) = 0;

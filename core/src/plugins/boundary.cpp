@@ -4,7 +4,6 @@
 #include <new>
 
 namespace grit {
-
 void throw_boundary_error(const std::string& plugin, std::string_view function) {
   std::string what = "something that is not a std::exception";
   try {
@@ -17,7 +16,12 @@ void throw_boundary_error(const std::string& plugin, std::string_view function) 
     what = error.what();
   } catch (...) {
   }
-  throw BoundaryError(plugin + ": its " + std::string(function) + " threw: " + what +
+  throw_boundary_fault(plugin, function, "threw:", what);
+}
+
+void throw_boundary_fault(const std::string& plugin, std::string_view function, std::string_view did,
+                          const std::string& fault) {
+  throw BoundaryError(plugin + ": its " + std::string(function) + ' ' + std::string(did) + ' ' + fault +
                       "\n  fix the plugin, or choose another one");
 }
 

@@ -9,7 +9,8 @@
 
 namespace grit {
 
-/// An exception out of a plugin, which it names. Further plugins that it passes are not to blame.
+/// An exception out of a plugin, or a value that it must not return. Names the plugin; further ones that it passes are
+/// not to blame.
 class BoundaryError : public PluginError {
  public:
   using PluginError::PluginError;
@@ -18,6 +19,10 @@ class BoundaryError : public PluginError {
 /// To be called while an exception is handled. Throws a BoundaryError that names the plugin, the called function and
 /// the cause. A BoundaryError passes, and so does std::bad_alloc: it is no fault of the plugin.
 [[noreturn]] void throw_boundary_error(const std::string& plugin, std::string_view function);
+
+/// Throws a BoundaryError: the function of the plugin `did` something, e.g. "returned", that is a `fault`.
+[[noreturn]] void throw_boundary_fault(const std::string& plugin, std::string_view function, std::string_view did,
+                                       const std::string& fault);
 
 /// Returns `call()`. An exception becomes a BoundaryError.
 template <class Call>

@@ -1,12 +1,19 @@
 #include "plugins/guarded.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
+#include <cstddef>
 #include <functional>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "grit/toolkit/limited_fields.hpp"
 #include "plugins/boundary.hpp"
 #include "plugins/guarded_parameters.hpp"
+#include "plugins/returned.hpp"
 
 namespace grit {
 namespace {
@@ -31,6 +38,21 @@ class Guard : public Interface {
   decltype(auto) guard_unless_refused(std::string_view function, Call&& call) const {
     return at_boundary_unless_refused(title_, function, std::forward<Call>(call));
   }
+  /// What `call` returns, unless `fault` finds something wrong with it.
+  template <class Call, class Fault>
+  auto guard_value(std::string_view function, Call&& call, const Fault& fault) const {
+    auto value = guard(function, std::forward<Call>(call));
+    expect(function, "returned", fault(value));
+    return value;
+  }
+  template <class Call>
+  auto guard_value(std::string_view function, Call&& call) const {
+    return guard_value(function, std::forward<Call>(call), [](const auto& value) { return fault_of(value); });
+  }
+  /// Throws the fault that `function` made, if there is one.
+  void expect(std::string_view function, std::string_view did, const std::string& fault) const {
+    if (!fault.empty()) throw_boundary_fault(title_, function, did, fault);
+  }
   void guard_declaration(std::string_view function, Parameters& parameters,
                          const std::function<void()>& declare) const {
     guard_declared(title_, function, parameters, declare);
@@ -51,17 +73,32 @@ class GuardedBodyKind final : public Guard<BodyKind> {
  public:
   using Guard::Guard;
   void prepare() override {
+    clump_.reset();
     guard_unless_refused("prepare()", [&] { made().prepare(); });
   }
   const ClumpShape* clump() const override {
-    return guard("clump()", [&] { return made().clump(); });
+    if (!clump_) clump_ = checked_clump();
+    return clump_->empty() ? nullptr : clump_->data();
   }
   double volume(double radius) const override {
-    return guard("volume()", [&] { return made().volume(radius); });
+    return guard_value(
+        "volume()", [&] { return made().volume(radius); }, fault_of_positive);
   }
   double inertia(double radius, double mass) const override {
-    return guard("inertia()", [&] { return made().inertia(radius, mass); });
+    return guard_value(
+        "inertia()", [&] { return made().inertia(radius, mass); }, fault_of_positive);
   }
+
+ private:
+  /// A copy of the clump, if there is one.
+  std::vector<ClumpShape> checked_clump() const {
+    const ClumpShape* const shape = guard("clump()", [&] { return made().clump(); });
+    if (shape == nullptr) return {};
+    expect("clump()", "returned", fault_of(*shape));
+    return {*shape};
+  }
+
+  mutable std::optional<std::vector<ClumpShape>> clump_;  // since the first call
 };
 
 class GuardedContactLaw final : public Guard<ContactLaw> {
@@ -80,7 +117,7 @@ class GuardedContactLaw final : public Guard<ContactLaw> {
     guard("mix()", [&] { made().mix(materials, of_bodies); });
   }
   std::vector<StateField> state() const override {
-    return guard("state()", [&] { return made().state(); });
+    return guard_value("state()", [&] { return made().state(); });
   }
   LawLoop loop() const override {
     return guard("loop()", [&] { return made().loop(); });
@@ -101,10 +138,13 @@ class GuardedContactLaw final : public Guard<ContactLaw> {
     return guard("has_reach()", [&] { return made().has_reach(); });
   }
   double reach(const PairSize& pair, std::size_t material_a, std::size_t material_b) const override {
-    return guard("reach()", [&] { return made().reach(pair, material_a, material_b); });
+    return guard_value(
+        "reach()", [&] { return made().reach(pair, material_a, material_b); }, fault_of_not_negative);
   }
   std::vector<double> reaches(double radius) const override {
-    return guard("reaches()", [&] { return made().reaches(radius); });
+    auto reaches = guard("reaches()", [&] { return made().reaches(radius); });
+    for (const double reach : reaches) expect("reaches()", "returned", fault_of_not_negative(reach));
+    return reaches;
   }
   std::vector<double> mixed(std::size_t material_a, std::size_t material_b, bool wall) const override {
     return guard("mixed()", [&] { return made().mixed(material_a, material_b, wall); });
@@ -119,13 +159,14 @@ class GuardedEngine final : public Guard<Engine> {
  public:
   using Guard::Guard;
   Phase phase() const override {
-    return guard("phase()", [&] { return made().phase(); });
+    return guard_value("phase()", [&] { return made().phase(); });
   }
   StateRequest needs() const override {
     return guard("needs()", [&] { return made().needs(); });
   }
   void settings(MotionSettings& motion) const override {
     guard("settings()", [&] { made().settings(motion); });
+    expect("settings()", "set", fault_of(motion));
   }
   void forces(const World& world, std::span<Row> force, std::span<Row> moment) const override {
     guard("forces()", [&] { made().forces(world, force, moment); });
@@ -134,7 +175,7 @@ class GuardedEngine final : public Guard<Engine> {
     return guard("removes()", [&] { return made().removes(world, centre); });
   }
   EngineRates rates(const World& world) const override {
-    return guard("rates()", [&] { return made().rates(world); });
+    return guard_value("rates()", [&] { return made().rates(world); });
   }
   void serialize(Archive& archive) override { guard_serialize(archive); }
 };
@@ -144,35 +185,51 @@ class GuardedGeometry final : public Guard<Geometry> {
   using Guard::Guard;
   void prepare() override {
     guard_unless_refused("prepare()", [&] { made().prepare(); });
+    bounds_ = bounds();
+    if (is_triangulated()) triangle_count_ = triangles().size() / 3;
   }
   Bounds bounds() const override {
-    return guard("bounds()", [&] { return made().bounds(); });
+    return bounds_ ? *bounds_ : guard_value("bounds()", [&] { return made().bounds(); });
   }
   bool hollow() const override {
     return guard("hollow()", [&] { return made().hollow(); });
   }
   double area() const override {
-    return guard("area()", [&] { return made().area(); });
+    return guard_value(
+        "area()", [&] { return made().area(); }, fault_of_not_negative);
   }
   Vec3 normal() const override {
-    return guard("normal()", [&] { return made().normal(); });
+    return guard_value(
+        "normal()", [&] { return made().normal(); }, fault_of_normal);
   }
   bool flat() const override {
     return guard("flat()", [&] { return made().flat(); });
   }
   void find_contacts(const Pose& pose, std::span<const Sphere> spheres,
                      std::vector<SurfaceContact>& contacts) const override {
+    const std::size_t before = contacts.size();
     guard("find_contacts()", [&] { made().find_contacts(pose, spheres, contacts); });
+    if (contacts.size() < before) expect("find_contacts()", "removed", "contacts; allowed is to append them");
+    expect("find_contacts()", "found", fault_of_contacts(std::span(contacts).subspan(before), spheres));
   }
   bool near(const Pose& pose, const Vec3& centre, double reach) const override {
     return guard("near()", [&] { return made().near(pose, centre, reach); });
   }
   std::vector<Vec3> triangles() const override {
-    return guard("triangles()", [&] { return made().triangles(); });
+    return guard_value(
+        "triangles()", [&] { return made().triangles(); }, fault_of_triangles);
   }
   std::optional<std::uint32_t> triangle_of(std::uint32_t feature) const override {
-    return guard("triangle_of()", [&] { return made().triangle_of(feature); });
+    const auto triangle = guard("triangle_of()", [&] { return made().triangle_of(feature); });
+    if (triangle && triangle_count_ && *triangle >= *triangle_count_)
+      expect("triangle_of()", "returned",
+             fmt::format("{}; allowed is an index of its {} triangles", *triangle, *triangle_count_));
+    return triangle;
   }
+
+ private:
+  std::optional<Bounds> bounds_;               // since it was prepared, from when on it does not change
+  std::optional<std::size_t> triangle_count_;  // the same, of a triangulated one
 };
 
 class GuardedProbe : public Guard<Probe> {
@@ -185,13 +242,13 @@ class GuardedProbe : public Guard<Probe> {
     guard_unless_refused("prepare()", [&] { made().prepare(world); });
   }
   std::vector<Channel> channels() const override {
-    return guard("channels()", [&] { return made().channels(); });
+    return guard_value("channels()", [&] { return made().channels(); });
   }
   void sample(const World& world, ChannelValues& values) override {
     guard("sample()", [&] { made().sample(world, values); });
   }
   std::vector<Field> fields(const World& world) override {
-    return guard("fields()", [&] { return made().fields(world); });
+    return guard_value("fields()", [&] { return made().fields(world); });
   }
   void serialize(Archive& archive) override { guard_serialize(archive); }
 };

@@ -1,4 +1,5 @@
-// Components of plugins as the kernel calls them: an exception out of any function names the plugin and the function.
+// Components of plugins as the kernel calls them: an exception out of any function, and a value that it must not
+// return, names the plugin and the function.
 #pragma once
 
 #include <memory>
@@ -13,8 +14,9 @@
 
 namespace grit {
 
-/// A component that passes every call to `made`, which it owns. Exceptions become a PluginError that begins with
-/// `title`. Those by which a function refuses parameters or a checkpoint pass: see grit/error.hpp. A probe with
+/// A component that passes every call to `made`, which it owns. Exceptions, and faults of what is returned (see
+/// plugins/returned.hpp), become a PluginError that begins with `title`. Clumps, and bounds of geometries, are read
+/// once. Those by which a function refuses parameters or a checkpoint pass: see grit/error.hpp. A probe with
 /// LimitedFields has them still.
 std::shared_ptr<BodyKind> guarded(std::shared_ptr<BodyKind> made, std::string title);
 std::shared_ptr<ContactLaw> guarded(std::shared_ptr<ContactLaw> made, std::string title);

@@ -30,7 +30,8 @@ class Observer {
         probe_(std::move(probe)),
         groups_(description.groups),
         schedule_(description.cadence),
-        values_(prepared(world)) {}
+        group_{name, prepared_channels(world)},
+        values_("probe \"" + name_ + "\" of type \"" + description.probe.type() + '"', group_.channels) {}
   /// Throws PlacedError if fields would be left out of a frame now.
   void check_fields(const World& world) try {
     if (const auto* limited = dynamic_cast<const LimitedFields*>(probe_.get())) limited->check_fields(seen(world));
@@ -41,7 +42,7 @@ class Observer {
     throw PlacedError({"probes", name_}, error.what());
   }
   const std::string& name() const { return name_; }
-  ProbeGroup group() const { return {name_, probe_->channels()}; }
+  ProbeGroup group() const { return group_; }
   bool watches(const std::string& stage) const {
     return description_->stages.empty() ||
            std::find(description_->stages.begin(), description_->stages.end(), stage) != description_->stages.end();
@@ -74,12 +75,12 @@ class Observer {
     groups_.update(world);
     return groups_;
   }
-  /// Room for the samples of the probe, which is prepared.
-  ChannelValues prepared(const World& world) try {
+  /// The channels of the probe, which is prepared.
+  std::vector<Channel> prepared_channels(const World& world) try {
     if (!description_->groups.empty() && probe_->needs().has(BodyState::energy))
       throw PlacedError({"probes", name_, "groups"}, "the energy balance is that of all bodies; remove groups");
     probe_->prepare(seen(world));
-    return {"probe \"" + name_ + "\" of type \"" + description_->probe.type() + '"', probe_->channels()};
+    return probe_->channels();
   } catch (const ParameterError& error) {
     throw PlacedError(placed(error, {"probes", name_}));
   } catch (const Error& error) {
@@ -92,6 +93,7 @@ class Observer {
   std::shared_ptr<Probe> probe_;
   GroupView groups_;
   Schedule schedule_;
+  ProbeGroup group_;  // read once: samples are taken by these channels
   ChannelValues values_;
   std::uint64_t last_step_ = ~0ull, samples_ = 0;
   double seconds_ = 0;

@@ -165,6 +165,8 @@ void FormulaProbe::declare(Parameters& parameters) {
       if (!is_snake_case(curve.first))
         complain("curves", "the name \"" + curve.first + "\"",
                  "lower-case letters, digits and _, starting with a letter");
+      else if (curve.first == "time" || curve.first == "step")
+        complain("curves", "the name \"" + curve.first + "\"", "another name: every probe has a series of this one");
     for (const auto& constant : constants)
       if (!is_formula_name(constant.first))
         complain("constants", "the name \"" + constant.first + "\"",

@@ -208,10 +208,12 @@ TEST(Formula, ChecksNames) {
   FormulaProbe probe;
   EXPECT_EQ(complaints(probe), "curves: found no curve, allowed: at least one\n");
   probe.curves["Stress Ratio"].formula = "time";
+  probe.curves["time"].formula = "step";
   probe.constants["1st"].value = 1;
   EXPECT_EQ(
       complaints(probe),
       "curves: found the name \"Stress Ratio\", allowed: lower-case letters, digits and _, starting with a letter\n"
+      "curves: found the name \"time\", allowed: another name: every probe has a series of this one\n"
       "constants: found the name \"1st\", allowed: letters, digits and _, not starting with a digit\n");
 }
 

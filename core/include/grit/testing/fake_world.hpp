@@ -96,7 +96,7 @@ struct FakeWorld : World {
   Region interior(double margin) const override {
     Region inner = whole;
     for (int k = 0; k < 3; ++k)
-      if (!box.periodic[k]) inner.low[k] += margin, inner.high[k] -= margin;
+      if (!box.periodic[static_cast<std::size_t>(k)]) inner.low[k] += margin, inner.high[k] -= margin;
     return inner;
   }
   double mean_diameter() const override {
