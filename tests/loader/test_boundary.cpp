@@ -456,6 +456,26 @@ TEST(BoundaryOfTheProgram, NamesAFunctionThatThrowsInAThread) {
   EXPECT_THAT(outcome.err, HasSubstr("its near() threw: something that is not a std::exception"));
 }
 
+TEST(BoundaryOfTheProgram, RefusesChannelsThatCannotBeWritten) {
+  for (const std::string name : {"", "a/b", "time"}) {
+    ::setenv("CHANNEL", name.c_str(), 1);
+    const Outcome outcome = run_scene();
+    ::unsetenv("CHANNEL");
+    EXPECT_EQ(outcome.status, 3) << name;
+    EXPECT_THAT(outcome.err, HasSubstr("probe plugin \"throwing\" (" THROWING "/probes/throwing.so): its channels() "
+                                       "returned a channel of the name \"" +
+                                       name + '"'));
+  }
+}
+
+TEST(BoundaryOfTheProgram, IsNotLeftByExit) {
+  const Throwing leaving("sample()", "exit(0)");
+  const Outcome outcome = run_scene();
+  EXPECT_EQ(outcome.status, 70);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr(THROWING "/probes/throwing.so called exit() before grit was done"),
+                                 HasSubstr("fix the plugin"), HasSubstr("grit run --resume")));
+}
+
 /// No fault of the plugin: the message says how the run goes on.
 TEST(BoundaryOfTheProgram, LeavesWantOfMemoryToTheRun) {
   const Throwing throwing("sample()", "std::bad_alloc");

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "app/command.hpp"
+#include "app/early_exit.hpp"
 #include "format/resources.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
@@ -133,5 +134,6 @@ ExitStatus report(const std::function<ExitStatus()>& work) {
 }  // namespace grit
 
 int main(int count, char** arguments) {
-  return static_cast<int>(grit::report([&] { return grit::main({arguments + 1, arguments + count}); }));
+  grit::refuse_early_exit();
+  return grit::finish(grit::report([&] { return grit::main({arguments + 1, arguments + count}); }));
 }

@@ -10,7 +10,8 @@ struct Counter final : grit::Probe, grit::LimitedFields {
   void prepare(const grit::World&) override { throwing::here("prepare()"); }
   std::vector<grit::Channel> channels() const override {
     throwing::here("channels()");
-    return {{"bodies", "1", "number of bodies", {}}};
+    const char* const name = std::getenv("CHANNEL");
+    return {{name == nullptr ? "bodies" : name, "1", "number of bodies", {}}};
   }
   void sample(const grit::World& world, grit::ChannelValues& values) override {
     throwing::here("sample()");
