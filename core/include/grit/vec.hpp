@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)
@@ -10,6 +11,9 @@
 #endif
 
 namespace grit {
+
+/// A signed index, as those of vectors are, as one of an array.
+constexpr std::size_t as_index(std::ptrdiff_t index) { return static_cast<std::size_t>(index); }
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;

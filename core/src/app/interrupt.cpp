@@ -10,11 +10,11 @@
 namespace grit {
 namespace {
 
-std::atomic<bool> interrupted{false};
+std::atomic<bool> was_interrupted{false};
 
 // The second Ctrl-C ends the process.
 extern "C" void on_interrupt(int signal) {
-  interrupted.store(true);
+  was_interrupted.store(true);
   std::signal(signal, signal == SIGHUP ? SIG_IGN : SIG_DFL);
 }
 
@@ -35,12 +35,12 @@ void handle(void (*handler)(int)) {
 
 const std::atomic<bool>& end_on_interrupts() {
   handle(on_early_interrupt);
-  return interrupted;
+  return was_interrupted;
 }
 
 const std::atomic<bool>& catch_interrupts() {
   handle(on_interrupt);
-  return interrupted;
+  return was_interrupted;
 }
 
 }  // namespace grit

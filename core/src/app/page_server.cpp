@@ -94,7 +94,8 @@ class PageServer {
       error_code error;
       const std::size_t length = co_await asio::async_read_until(control_, lines, '\n', into(error));
       if (error) break;
-      progress_.assign(asio::buffers_begin(lines.data()), asio::buffers_begin(lines.data()) + length - 1);
+      const auto begin = asio::buffers_begin(lines.data());
+      progress_.assign(begin, begin + static_cast<std::ptrdiff_t>(length) - 1);
       lines.consume(length);
       news_.cancel();
     }

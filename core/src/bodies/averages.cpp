@@ -20,7 +20,7 @@ void for_images(const Cell& cell, const Region& region, const Vec3& low, const V
   int first[3], last[3];
   Vec3 period = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
-    if (cell.periodic[k]) {
+    if (cell.periodic[as_index(k)]) {
       period[k] = cell.high[k] - cell.low[k];
       first[k] = static_cast<int>(std::ceil((region.low[k] - high[k]) / period[k]));
       last[k] = static_cast<int>(std::floor((region.high[k] - low[k]) / period[k]));

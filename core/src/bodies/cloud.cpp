@@ -49,8 +49,8 @@ class Room {
     std::array<int, 3> cell;
     Vec3 centre = xyz(grain);
     for (int k = 0; k < 3; ++k) {
-      if (periodic_[k]) centre[k] -= size_[k] * std::floor((centre[k] - low_[k]) / size_[k]);
-      cell[k] = std::clamp(level.cell(k, centre[k] - low_[k]), 0, level.cells[k] - 1);
+      if (periodic_[as_index(k)]) centre[k] -= size_[k] * std::floor((centre[k] - low_[k]) / size_[k]);
+      cell[as_index(k)] = std::clamp(level.cell(k, centre[k] - low_[k]), 0, level.cells[as_index(k)] - 1);
     }
     auto& first = level.first[level.index(cell[0], cell[1], cell[2])];
     next_.push_back(first);
@@ -76,7 +76,9 @@ class Room {
     std::vector<std::int32_t> first;  // grain of each cell; the others follow by next_
 
     int cell(int axis, double offset) const { return static_cast<int>(std::floor(offset * per_length[axis])); }
-    std::size_t index(int x, int y, int z) const { return (static_cast<std::size_t>(z) * cells[1] + y) * cells[0] + x; }
+    std::size_t index(int x, int y, int z) const {
+      return (as_index(z) * as_index(cells[1]) + as_index(y)) * as_index(cells[0]) + as_index(x);
+    }
   };
 
   std::size_t level_of(double radius) const { return static_cast<std::size_t>(std::ilogb(largest_ / radius)); }
@@ -86,16 +88,16 @@ class Room {
     // As wide as the grains, but not many more cells than grains.
     const double side = std::max(2 * level.largest, std::cbrt(size_.prod() / static_cast<double>(level.expected)));
     for (int k = 0; k < 3; ++k) {
-      level.cells[k] = std::max(1, static_cast<int>(size_[k] / side));
-      level.per_length[k] = level.cells[k] / size_[k];
+      level.cells[as_index(k)] = std::max(1, static_cast<int>(size_[k] / side));
+      level.per_length[k] = level.cells[as_index(k)] / size_[k];
     }
     level.first.assign(level.index(0, 0, level.cells[2]), -1);
   }
 
   /// Whether all grains of a list keep clear; `at` is shifted to the image of the list's cell.
   bool free_list(std::int32_t grain, const Vec3& at, double radius) const {
-    for (; grain >= 0; grain = next_[grain]) {
-      const Row& other = grains_[grain];
+    for (; grain >= 0; grain = next_[as_index(grain)]) {
+      const Row& other = grains_[as_index(grain)];
       const double x = other.x - at[0], y = other.y - at[1], z = other.z - at[2], reach = other.w + radius;
       if (x * x + y * y + z * z < reach * reach) return false;
     }
@@ -105,7 +107,8 @@ class Room {
   bool free_own_cell(const Level& level, const Row& grain) const {
     const Vec3 at = xyz(grain);
     std::array<int, 3> cell;
-    for (int k = 0; k < 3; ++k) cell[k] = std::clamp(level.cell(k, at[k] - low_[k]), 0, level.cells[k] - 1);
+    for (int k = 0; k < 3; ++k)
+      cell[as_index(k)] = std::clamp(level.cell(k, at[k] - low_[k]), 0, level.cells[as_index(k)] - 1);
     return free_list(level.first[level.index(cell[0], cell[1], cell[2])], at, grain.w);
   }
 
@@ -114,14 +117,16 @@ class Room {
     const Vec3 at = xyz(grain);
     std::array<int, 3> from, to;
     for (int k = 0; k < 3; ++k) {
-      from[k] = level.cell(k, at[k] - low_[k] - reach), to[k] = level.cell(k, at[k] - low_[k] + reach);
-      if (periodic_[k]) continue;
-      from[k] = std::clamp(from[k], 0, level.cells[k] - 1), to[k] = std::clamp(to[k], 0, level.cells[k] - 1);
+      from[as_index(k)] = level.cell(k, at[k] - low_[k] - reach),
+      to[as_index(k)] = level.cell(k, at[k] - low_[k] + reach);
+      if (periodic_[as_index(k)]) continue;
+      from[as_index(k)] = std::clamp(from[as_index(k)], 0, level.cells[as_index(k)] - 1),
+      to[as_index(k)] = std::clamp(to[as_index(k)], 0, level.cells[as_index(k)] - 1);
     }
     // A cell beyond a periodic side is one inside, seen from a position shifted by whole periods.
     Vec3 seen;
     const auto wrap = [&](int axis, int cell) {
-      const int cells = level.cells[axis];
+      const int cells = level.cells[as_index(axis)];
       const int turns = cell < 0 ? -((cells - 1 - cell) / cells) : cell / cells;
       seen[axis] = turns == 0 ? at[axis] : at[axis] - turns * size_[axis];
       return cell - turns * cells;
@@ -159,7 +164,7 @@ std::vector<Row> near_box(const Region& box, const Cell& cell, const std::array<
                           std::span<const Row> others, double radius) {
   Vec3 period = Vec3::Zero();
   for (int k = 0; k < 3; ++k)
-    if (cell.periodic[k] && !wrapped[k]) period[k] = cell.high[k] - cell.low[k];
+    if (cell.periodic[as_index(k)] && !wrapped[as_index(k)]) period[k] = cell.high[k] - cell.low[k];
   std::vector<Row> near;
   for (const Row& other : others) {
     const Vec3 reach = Vec3::Constant(other.w + radius);
@@ -168,9 +173,10 @@ std::vector<Row> near_box(const Region& box, const Cell& cell, const std::array<
       Vec3 centre = xyz(other);
       bool counts = true;
       for (int k = 0; k < 3; ++k) {
-        counts = counts && (turns[k] == 0 || period[k] > 0);
-        centre[k] += turns[k] * period[k];
-        counts = counts && (wrapped[k] || (centre[k] > box.low[k] - reach[k] && centre[k] < box.high[k] + reach[k]));
+        counts = counts && (turns[as_index(k)] == 0 || period[k] > 0);
+        centre[k] += turns[as_index(k)] * period[k];
+        counts = counts &&
+                 (wrapped[as_index(k)] || (centre[k] > box.low[k] - reach[k] && centre[k] < box.high[k] + reach[k]));
       }
       if (counts) near.push_back({centre.x(), centre.y(), centre.z(), other.w});
     }
@@ -186,10 +192,10 @@ std::array<bool, 3> wrapped_axes(const std::string& source, const Region& box, c
     if (!(box.low[k] < box.high[k]) || !std::isfinite(box.high[k] - box.low[k]))
       throw Error(source + ": the box " + text(box) +
                   " is empty or infinite; its low corner must be below its high corner");
-    if (cell.periodic[k] && (box.low[k] < cell.low[k] || box.high[k] > cell.high[k]))
+    if (cell.periodic[as_index(k)] && (box.low[k] < cell.low[k] || box.high[k] > cell.high[k]))
       throw Error(source + ": the box " + text(box) + " leaves the periodic cell " + text({cell.low, cell.high}) +
                   "; keep it inside");
-    wrapped[k] = cell.periodic[k] && box.low[k] == cell.low[k] && box.high[k] == cell.high[k];
+    wrapped[as_index(k)] = cell.periodic[as_index(k)] && box.low[k] == cell.low[k] && box.high[k] == cell.high[k];
   }
   return wrapped;
 }
@@ -224,7 +230,7 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
   placed.reserve(diameters.size());
   const auto coordinate = [&](int axis, double radius) {
     if (axis == flat) return 0.5 * (box.low[axis] + box.high[axis]);
-    const double margin = wrapped[axis] ? 0 : radius;
+    const double margin = wrapped[as_index(axis)] ? 0 : radius;
     const double at = box.low[axis] + margin + random.uniform() * std::max(0.0, size[axis] - 2 * margin);
     return std::min(at, box.high[axis] - margin);
   };

@@ -111,8 +111,8 @@ void check_inside(const Cell& cell, const Bodies& bodies) {
     const std::uint32_t c = i < bodies.clumps.of_body.size() ? bodies.clumps.of_body[i].clump : no_clump;
     const double reach = c == no_clump ? x.w : 2 * bodies.clumps.clump[c].radius;
     for (int k = 0; k < 3; ++k) {
-      const double over =
-          cell.periodic[k] ? reach : 0;  // just outside a periodic side, a body is inside at the opposite side
+      // Just outside a periodic side, a body is inside at the opposite side.
+      const double over = cell.periodic[as_index(k)] ? reach : 0;
       if (xyz(x)[k] >= cell.low[k] - over && xyz(x)[k] <= cell.high[k] + over) continue;
       Outside& group = groups[bodies.group_of(bodies.id[i])];
       if (group.count == 0) group.first = x;

@@ -75,7 +75,8 @@ std::vector<double> draw_diameters(const SieveSizes& sizes, std::size_t count, R
         numbers[i - 1] + (passing[i] - passing[i - 1]) * (d[i - 1] + d[i]) / (2 * d[i - 1] * d[i - 1] * d[i] * d[i]);
   return stratified(count, random, [&](double share) {
     const double wanted = share * numbers.back();
-    const auto above = std::upper_bound(numbers.begin() + 1, numbers.end() - 1, wanted) - numbers.begin();
+    const std::size_t above =
+        as_index(std::upper_bound(numbers.begin() + 1, numbers.end() - 1, wanted) - numbers.begin());
     const double within = (wanted - numbers[above - 1]) / (numbers[above] - numbers[above - 1]);
     return even_mass_quantile(d[above - 1], d[above], within);
   });

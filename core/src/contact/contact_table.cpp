@@ -67,7 +67,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   const auto each_former = [&](auto&& use) {
     for (std::size_t block = 0; block < touching_.size(); ++block)
       for (std::uint32_t mask = touching_[block]; mask != 0; mask &= mask - 1) {
-        const auto slot = static_cast<std::uint32_t>(block * block_size + std::countr_zero(mask));
+        const auto slot = static_cast<std::uint32_t>(block * block_size + as_index(std::countr_zero(mask)));
         const std::uint32_t p = now[a_[slot]], q = now[b_[slot]];
         if (p != body_gone && q != body_gone) use(std::min(p, q), Former{std::max(p, q), slot, p > q, nowhere});
       }

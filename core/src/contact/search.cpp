@@ -38,7 +38,7 @@ Box extent(const Bodies& bodies, const Cell& cell) {
     box.low = box.low.cwiseMin(x), box.high = box.high.cwiseMax(x);
   }
   for (int k = 0; k < 3; ++k)
-    if (cell.periodic[k]) box.low[k] = cell.low[k], box.high[k] = cell.high[k];
+    if (cell.periodic[as_index(k)]) box.low[k] = cell.low[k], box.high[k] = cell.high[k];
   return box;
 }
 
@@ -51,7 +51,7 @@ std::array<int, 3> cells(const Vec3& length, double width, std::size_t bodies) {
     for (int k = 0; k < 3; ++k) {
       const double fitting = std::floor(length[k] / width);
       const double count = fitting > 1 ? std::min(fitting, 2e6) : 1;  // one of a length that is not a number
-      size[k] = static_cast<int>(count);
+      size[as_index(k)] = static_cast<int>(count);
       total *= count;
     }
     if (total <= most) return size;
@@ -77,8 +77,8 @@ std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell)
     const Vec3 x = xyz(bodies.position[i]);
     std::uint64_t morton = 0;
     for (int k = 0; k < 3; ++k) {
-      const double place = length[k] > 0 ? (x[k] - box.low[k]) / length[k] * size[k] : 0;
-      morton |= spread(static_cast<std::uint64_t>(std::clamp(place, 0.0, size[k] - 1.0))) << k;
+      const double place = length[k] > 0 ? (x[k] - box.low[k]) / length[k] * size[as_index(k)] : 0;
+      morton |= spread(static_cast<std::uint64_t>(std::clamp(place, 0.0, size[as_index(k)] - 1.0))) << k;
     }
     key[i] = morton;
   }
@@ -89,9 +89,9 @@ std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell)
   return order;
 }
 
-int NeighbourSearch::Grid::index(int axis, double x) const {
-  const double place = (x - origin[axis]) * per_length[axis];
-  return static_cast<int>(std::floor(std::clamp(place, -1e9, 1e9)));
+int NeighbourSearch::Grid::index(int axis, double coordinate) const {
+  const double cell = (coordinate - origin[axis]) * per_length[axis];
+  return static_cast<int>(std::floor(std::clamp(cell, -1e9, 1e9)));
 }
 
 void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins& skins) {
@@ -105,8 +105,8 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
     smallest = std::min(smallest, bodies.position[i].w), largest = std::max(largest, bodies.position[i].w);
   }
   for (int k = 0; k < 3; ++k) {
-    period_[k] = cell.periodic[k] ? cell.high[k] - cell.low[k] : 0;
-    per_period_[k] = cell.periodic[k] ? 1 / period_[k] : 0;
+    period_[k] = cell.periodic[as_index(k)] ? cell.high[k] - cell.low[k] : 0;
+    per_period_[k] = cell.periodic[as_index(k)] ? 1 / period_[k] : 0;
     to_image_[static_cast<std::size_t>(k)] = cell.period(k);
   }
 
@@ -118,30 +118,32 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
     const double place = std::log(radius / smallest) / std::log(largest / smallest) * classes;
     return std::clamp(static_cast<int>(place), 0, classes - 1);
   };
-  grids_.resize(classes);
+  grids_.resize(as_index(classes));
   for (Grid& grid : grids_) grid.members.clear(), grid.largest_radius = grid.largest_reach = 0;
   for (std::uint32_t i = 0; i < bodies.count(); ++i) {
     const double radius = bodies.position[i].w;
     const int c = class_of(radius);
-    grids_[c].members.push_back(i);
-    grids_[c].largest_radius = std::max(grids_[c].largest_radius, radius);
-    grids_[c].largest_reach = std::max(grids_[c].largest_reach, radius + skins.of_body(i));
+    grids_[as_index(c)].members.push_back(i);
+    grids_[as_index(c)].largest_radius = std::max(grids_[as_index(c)].largest_radius, radius);
+    grids_[as_index(c)].largest_reach = std::max(grids_[as_index(c)].largest_reach, radius + skins.of_body(i));
   }
   const Box box = extent(bodies, cell);
   const Vec3 length = box.high - box.low;
   for (int c = 0; c < classes; ++c) {
-    Grid& grid = grids_[c];
+    Grid& grid = grids_[as_index(c)];
     const std::vector<std::uint32_t>& members = grid.members;
     const double width = 2 * (grid.largest_radius + thinnest) + skins.reach();
     grid.size = cells(length, std::max(width, 1e-300), members.size());
     grid.origin = box.low;
-    for (int k = 0; k < 3; ++k) grid.per_length[k] = length[k] > 0 ? grid.size[k] / length[k] : 0;
+    for (int k = 0; k < 3; ++k) grid.per_length[k] = length[k] > 0 ? grid.size[as_index(k)] / length[k] : 0;
     const auto cell_of = [&](std::uint32_t i) {
       const Row& x = bodies.position[i];
-      const auto place = [&](int k, double value) { return std::clamp(grid.index(k, value), 0, grid.size[k] - 1); };
-      return (std::size_t(place(2, x.z)) * grid.size[1] + place(1, x.y)) * grid.size[0] + place(0, x.x);
+      const auto place = [&](int k, double value) {
+        return as_index(std::clamp(grid.index(k, value), 0, grid.size[as_index(k)] - 1));
+      };
+      return (place(2, x.z) * as_index(grid.size[1]) + place(1, x.y)) * as_index(grid.size[0]) + place(0, x.x);
     };
-    grid.start.assign(std::size_t(grid.size[0]) * grid.size[1] * grid.size[2] + 1, 0);
+    grid.start.assign(as_index(grid.size[0]) * as_index(grid.size[1]) * as_index(grid.size[2]) + 1, 0);
     for (const auto i : members) ++grid.start[cell_of(i) + 1];
     std::partial_sum(grid.start.begin(), grid.start.end(), grid.start.begin());
     grid.body.resize(members.size());
@@ -226,16 +228,19 @@ void NeighbourSearch::find(const Bodies& bodies, std::uint32_t body, std::vector
     int first[3], last[3];
     const auto reach_along = [&](int k, double from) {
       first[k] = grid.index(k, from - reach), last[k] = grid.index(k, from + reach);
-      if (!cell_.periodic[k]) {
-        first[k] = std::clamp(first[k], 0, grid.size[k] - 1), last[k] = std::clamp(last[k], 0, grid.size[k] - 1);
-      } else if (last[k] - first[k] >= grid.size[k]) {
-        first[k] = 0, last[k] = grid.size[k] - 1;  // each cell once
+      if (!cell_.periodic[as_index(k)]) {
+        first[k] = std::clamp(first[k], 0, grid.size[as_index(k)] - 1),
+        last[k] = std::clamp(last[k], 0, grid.size[as_index(k)] - 1);
+      } else if (last[k] - first[k] >= grid.size[as_index(k)]) {
+        first[k] = 0, last[k] = grid.size[as_index(k)] - 1;  // each cell once
       }
     };
     for (int k = 0; k < 3; ++k) reach_along(k, centre[k]);
     const auto wrapped = [&](int k, int place) {
-      if constexpr (skewed) return place - grid.size[k] * periods_beyond(place, grid.size[k]);
-      return place < 0 ? place + grid.size[k] : place >= grid.size[k] ? place - grid.size[k] : place;
+      if constexpr (skewed) return place - grid.size[as_index(k)] * periods_beyond(place, grid.size[as_index(k)]);
+      return place < 0                         ? place + grid.size[as_index(k)]
+             : place >= grid.size[as_index(k)] ? place - grid.size[as_index(k)]
+                                               : place;
     };
     // Bodies of cells beyond a side are seen from where this body has its image there.
     const bool all_z = skewed && last[2] - first[2] + 1 >= grid.size[2];
@@ -252,11 +257,13 @@ void NeighbourSearch::find(const Bodies& bodies, std::uint32_t body, std::vector
           reach_along(0, centre[0] - beyond_z * cell_.tilt[1] - periods_beyond(cy, grid.size[1]) * cell_.tilt[0]);
           if (all_y) first[0] = 0, last[0] = grid.size[0] - 1;
         }
-        const std::size_t line = (std::size_t(wrapped(2, cz)) * grid.size[1] + wrapped(1, cy)) * grid.size[0];
+        const std::size_t line =
+            (as_index(wrapped(2, cz)) * as_index(grid.size[1]) + as_index(wrapped(1, cy))) * as_index(grid.size[0]);
         // Cells in a row hold consecutive bodies, up to a side of the cell.
         for (int cx = first[0]; cx <= last[0];) {
           const int from = wrapped(0, cx), length = std::min(last[0] - cx, grid.size[0] - 1 - from) + 1;
-          const std::uint32_t begin = grid.start[line + from], end = grid.start[line + from + length];
+          const std::uint32_t begin = grid.start[line + as_index(from)],
+                              end = grid.start[line + as_index(from + length)];
           cx += length;
           if constexpr (skewed) {
             for (std::uint32_t n = begin; n < end; ++n) take(grid.body[n]);

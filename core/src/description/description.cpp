@@ -73,7 +73,7 @@ void check_columns(const FileSource& file, const Complain& complain) {
 void check_box(const Vec3& low, const Vec3& high, const Complain& complain) {
   for (int k = 0; k < 3; ++k)
     if (!(low[k] < high[k]))
-      complain("high/" + std::to_string(k), "high not above low along " + one_axis[k], "low < high");
+      complain("high/" + std::to_string(k), "high not above low along " + one_axis[as_index(k)], "low < high");
 }
 
 /// Reports names that are not among `names`.
@@ -570,13 +570,14 @@ void MotionDescription::declare(Parameters& p) {
           const bool swings = oscillation && oscillation->amplitude[k] != 0;
           claim(velocity[k] != 0 && !swings, "velocity");
           claim(swings, "oscillation");
-          claim(servo && servo->axis == one_axis[k], "servo");
-          claim(follow && follow->axes.find(one_axis[k]) != std::string::npos, "follow");
-          claim(free && free->axes.find(one_axis[k]) != std::string::npos, "free");
+          claim(servo && servo->axis == one_axis[as_index(k)], "servo");
+          claim(follow && follow->axes.find(one_axis[as_index(k)]) != std::string::npos, "follow");
+          claim(free && free->axes.find(one_axis[as_index(k)]) != std::string::npos, "free");
           if (claims.size() < 2) continue;
           std::string all;
           for (const auto& one : claims) all += (all.empty() ? "" : " and ") + one;
-          complain(claims.back(), "the axis " + one_axis[k] + " controlled by " + all, "one of them per axis");
+          complain(claims.back(), "the axis " + one_axis[as_index(k)] + " controlled by " + all,
+                   "one of them per axis");
         }
       },
       {"velocity", "oscillation", "servo", "follow", "free"});

@@ -41,7 +41,7 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std
   for (Clump& clump : bodies.clumps.clump)
     for (int n = 0; n < 3; ++n) {
       const int k = axis(n);
-      if (!cell.periodic[k]) {
+      if (!cell.periodic[as_index(k)]) {
         if (!outside(clump.centre, k) || !may_leave(open_sides, k, clump.centre[k] > cell.high[k])) continue;
         for (std::uint32_t s = clump.first; s < clump.last; ++s) result.leaves[bodies.clumps.spheres[s]] = true;
         continue;
@@ -60,7 +60,7 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std
     bool moved = false;
     for (int n = 0; n < 3; ++n) {
       const int k = axis(n);
-      if (!cell.periodic[k]) {
+      if (!cell.periodic[as_index(k)]) {
         const bool high = x[k] > cell.high[k];
         if (!outside(x, k)) continue;
         if (!may_leave(open_sides, k, high)) escaped(i, k, high);

@@ -16,7 +16,7 @@ DeformingCell::DeformingCell(const Cell& cell)
 Vec3 DeformingCell::periods() const {
   Vec3 periods = Vec3::Zero();
   for (int k = 0; k < 3; ++k)
-    if (cell_.periodic[k]) periods[k] = cell_.high[k] - cell_.low[k];
+    if (cell_.periodic[as_index(k)]) periods[k] = cell_.high[k] - cell_.low[k];
   return periods;
 }
 
@@ -51,7 +51,7 @@ Vec3 DeformingCell::tilt_growth(double previous_dt) const {
 Vec3 DeformingCell::period_growth(double previous_dt) const {
   Vec3 growth = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
-    if (!cell_.periodic[k]) continue;
+    if (!cell_.periodic[as_index(k)]) continue;
     const double period = cell_.high[k] - cell_.low[k];
     growth[k] = previous_dt == 0 ? period * cell_.strain_rate[k] : (period - lengths_before_[k]) / previous_dt;
   }
@@ -64,7 +64,7 @@ void DeformingCell::set_rates(const Vec3& strain_rate, const Vec3& shear_rate, d
   const bool skews = cell_.skewed() || !shear_rate.isZero(0.0);
   cell_.strain_rate = strain_rate, cell_.shear_rate = shear_rate;
   for (int k = 0; k < 3; ++k)
-    if (cell_.periodic[k]) lengths_before_[k] -= previous_dt * change[k] * lengths[k];
+    if (cell_.periodic[as_index(k)]) lengths_before_[k] -= previous_dt * change[k] * lengths[k];
   if (skews) tilt_before_ -= previous_dt * tilt_rate(lengths, cell_.tilt, change, change_of_shear);
 }
 
@@ -88,7 +88,7 @@ Eigen::Matrix3i DeformingCell::reduce_tilt() {
 
 void DeformingCell::set_open_sides(const Cell& box) {
   for (int k = 0; k < 3; ++k)
-    if (!cell_.periodic[k]) {
+    if (!cell_.periodic[as_index(k)]) {
       cell_.low[k] = box.low[k], cell_.high[k] = box.high[k];
       lengths_before_[k] = box.high[k] - box.low[k];
     }
@@ -101,7 +101,7 @@ void DeformingCell::advance(double dt) {
   if (cell_.skewed()) cell_.tilt += dt * tilt_rate(lengths_before_, tilt_before_, cell_.strain_rate, cell_.shear_rate);
   const Vec3 middle = centre();
   for (int k = 0; k < 3; ++k) {
-    if (!cell_.periodic[k]) continue;
+    if (!cell_.periodic[as_index(k)]) continue;
     const double half = 0.5 * lengths_before_[k] * (1 + dt * cell_.strain_rate[k]);
     cell_.low[k] = middle[k] - half, cell_.high[k] = middle[k] + half;
   }
@@ -113,8 +113,8 @@ void DeformingCell::update_images(double previous_dt) {
     const auto shift = image_shift(image);
     double position[3], velocity[3];
     for (int k = 0; k < 3; ++k) {
-      position[k] = shift[k] != 0 ? shift[k] * period[k] : 0;
-      velocity[k] = shift[k] != 0 ? shift[k] * growth[k] : 0;
+      position[k] = shift[as_index(k)] != 0 ? shift[as_index(k)] * period[k] : 0;
+      velocity[k] = shift[as_index(k)] != 0 ? shift[as_index(k)] * growth[k] : 0;
     }
     images_[image] = {{position[0], position[1], position[2], 0}, {velocity[0], velocity[1], velocity[2], 0}};
   }
@@ -135,7 +135,7 @@ void DeformingCell::serialize(Archive& archive) {
   expect_restored(std::memcmp(&periodic, &cell_.periodic, sizeof periodic) == 0, "other axes of the cell are periodic");
   expect_restored(images_.size() == all_images, "the images of the cell have another number");
   for (int k = 0; k < 3; ++k)
-    expect_restored(!cell_.periodic[k] ||
+    expect_restored(!cell_.periodic[as_index(k)] ||
                         (std::isfinite(cell_.low[k]) && std::isfinite(cell_.high[k]) && cell_.low[k] < cell_.high[k]),
                     "a period of the cell is not a length");
   expect_restored(cell_.strain_rate.allFinite() && cell_.shear_rate.allFinite() && cell_.tilt.allFinite() &&

@@ -113,7 +113,8 @@ bool is_binary(std::string_view bytes) {
 }
 
 bool begins_printable(std::string_view text) {
-  return std::ranges::all_of(text.substr(0, preamble), [](unsigned char c) { return c >= ' ' || is_blank(c); });
+  return std::ranges::all_of(text.substr(0, preamble),
+                             [](unsigned char c) { return c >= ' ' || is_blank(static_cast<char>(c)); });
 }
 
 /// Whether a file that is not a complete binary one is an ASCII file, going by its beginning.

@@ -213,7 +213,8 @@ class Reader {
   bool read(const Description& value, const std::string& at, const Parameter& parameter, Vec3* target) {
     if (!value.is_array() || value.size() != 3) return wrong_length(at, value, "3 numbers, of x, y and z");
     bool clean = true;
-    for (int k = 0; k < 3; ++k) clean &= number(value[k], at + '/' + std::to_string(k), parameter, (*target)[k]);
+    for (int k = 0; k < 3; ++k)
+      clean &= number(value[as_index(k)], at + '/' + std::to_string(k), parameter, (*target)[k]);
     return clean;
   }
   bool read(const Description& value, const std::string& at, const Parameter& parameter, std::optional<Vec3>* target) {

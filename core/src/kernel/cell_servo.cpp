@@ -149,7 +149,7 @@ void change_rates(State& state, const CellRates& rates) {
       const auto& periods = bodies.clumps.of_body[i].periods;
       v = flow(bodies.clumps.clump[c].centre);
       for (int k = 0; k < 3; ++k)
-        if (cell.periodic[k]) v[k] -= periods[static_cast<std::size_t>(k)] * change[k] * period[k];
+        if (cell.periodic[as_index(k)]) v[k] -= periods[as_index(k)] * change[k] * period[k];
       if (skewed) {
         const Vec3 growth = DeformingCell::tilt_rate(period, cell.tilt, change, change_of_shear);
         v -= DeformingCell::columns(Vec3::Zero(), growth) * Vec3(periods[0], periods[1], periods[2]);

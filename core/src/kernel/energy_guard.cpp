@@ -21,7 +21,7 @@ bool all_work_is_known(const State& state) {
   bool known = settings.growth_rate == 0 && !state.deforms() && !settings.engines_do_work();
   // There is no potential along a periodic axis.
   for (int k = 0; k < 3; ++k)
-    known = known && !(state.cell.cell().periodic[k] &&
+    known = known && !(state.cell.cell().periodic[as_index(k)] &&
                        settings.any_motion([k](const MotionSettings& motion) { return motion.gravity[k] != 0; }));
   return known;
 }

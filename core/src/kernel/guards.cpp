@@ -59,7 +59,7 @@ void check_overlap(const State& state, const World& world) {
 void check_periods(const State& state) {
   const double shortest = NeighbourLists::shortest_period(state.bodies, state.statistics, state.reaches());
   for (int k = 0; k < 3; ++k)
-    if (const double period = state.cell.lengths()[k]; state.cell.cell().periodic[k] && period < shortest)
+    if (const double period = state.cell.lengths()[k]; state.cell.cell().periodic[as_index(k)] && period < shortest)
       fail(
           state, Guard::period, {"domain"},
           "/domain has a period of " + number(period) + " m along " + "xyz"[k] + ", below the minimum of " +

@@ -22,7 +22,7 @@ struct SkinWidths {
   SkinWidths(const DeformingCell& cell, const PopulationStatistics& statistics, double reach)
       : least(least_skin * statistics.mean_diameter), most(most_skin * statistics.mean_diameter) {
     for (int k = 0; k < 3; ++k)
-      if (cell.cell().periodic[k])
+      if (cell.cell().periodic[as_index(k)])
         most = std::min(most, 0.25 * cell.lengths()[k] - statistics.largest_radius - 0.5 * reach);
   }
   double at(double speed, double dt) const { return std::max(least, std::min(most, steps_of_skin * dt * speed)); }
@@ -41,7 +41,8 @@ bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell) {
   if (cell.deforms() || cell.cell().skewed()) {
     from = 0.5 * (reference_cell_.low + reference_cell_.high), to = cell.centre();
     for (int k = 0; k < 3; ++k)
-      if (cell.cell().periodic[k]) stretch[k] = cell.lengths()[k] / (reference_cell_.high[k] - reference_cell_.low[k]);
+      if (cell.cell().periodic[as_index(k)])
+        stretch[k] = cell.lengths()[k] / (reference_cell_.high[k] - reference_cell_.low[k]);
       else from[k] = to[k] = 0;
   }
   // Deformation since the last rebuild, which has moved no image since.

@@ -12,7 +12,7 @@ namespace grit {
 namespace {
 
 /// Relative difference of lengths that count as equal.
-constexpr double rounding = 1e-6;
+constexpr double wall_rounding = 1e-6;
 
 /// The box around a wall at its present pose; empty if it cannot be told for a wall that has turned.
 std::optional<Bounds> bounds_now(const Geometry& geometry, const Pose& pose) {
@@ -64,7 +64,7 @@ bool is_uniform_along(int axis, const Geometry& geometry, const Pose& pose, cons
         place[axis] = bounds.low[axis] + (0.25 + k * step) * size[axis];
         const double overlap = overlap_at(geometry, pose, place, radius);
         if (k == 0) first = overlap;
-        else if (std::abs(overlap - first) > rounding * radius) return false;
+        else if (std::abs(overlap - first) > wall_rounding * radius) return false;
       }
     }
   return true;
@@ -97,7 +97,7 @@ bool is_uniform_along(int axis, const Geometry& geometry, const Pose& pose, cons
 
 void repeat_walls(State& state) {
   const Cell& cell = state.cell.cell();
-  const double reach = (1 - rounding) * reach_of_largest(state);
+  const double reach = (1 - wall_rounding) * reach_of_largest(state);
   for (WallSurface& surface : state.surfaces) surface.period.setZero();
   if (!cell.periodic_anywhere() || state.bodies.count() == 0) return;
   for (std::size_t w = 0; w < state.walls.size(); ++w) {
@@ -110,8 +110,8 @@ void repeat_walls(State& state) {
       const double period = to - from;
       const bool inside = low > from + reach && high < to - reach, across = low <= from - reach && high >= to + reach;
       const bool keeps_axis =
-          (pose.turn * Vec3::Unit(k) - Vec3::Unit(k)).norm() <= rounding;  // such as a drum along it
-      if (keeps_axis && std::abs(high - low - period) <= rounding * period) {
+          (pose.turn * Vec3::Unit(k) - Vec3::Unit(k)).norm() <= wall_rounding;  // such as a drum along it
+      if (keeps_axis && std::abs(high - low - period) <= wall_rounding * period) {
         const Geometry* geometry = &state.walls.geometry(w);
         const Geometry*& uniform = state.surfaces[w].uniform[static_cast<std::size_t>(k)];
         if (uniform != geometry && !is_uniform_along(k, *geometry, pose, *bounds, state.statistics.largest_radius))

@@ -36,7 +36,7 @@ MotionSettings motion_of(const std::vector<ActingEngine>& engines, std::optional
 }  // namespace
 
 bool Settings::by_group() const {
-  const auto limited = [](const GroupMask& groups) { return !groups.empty(); };
+  const auto limited = [](const GroupMask& mask) { return !mask.empty(); };
   return !motion_of_groups.empty() || std::ranges::any_of(force_engines, limited, &ActingEngine::groups) ||
          std::ranges::any_of(removal_engines, limited, &ActingEngine::groups) ||
          std::ranges::any_of(groups_of_walls, limited);

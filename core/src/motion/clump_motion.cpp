@@ -130,7 +130,7 @@ double move_rigidly(const RigidStep& motion, double dt, Clump& clump) {
 }
 
 /// Prefetches: spheres of a clump are in spatial order, which the processor cannot predict.
-constexpr std::size_t ahead = 3;
+constexpr std::size_t fetched_ahead = 3;
 void fetch(const Clump& clump, const Bodies& bodies, const BodySum* sum) {
   for (std::uint32_t k = clump.first; k < clump.last; ++k) {
     const std::uint32_t body = bodies.clumps.spheres[k];
@@ -159,7 +159,7 @@ Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const Bo
   Motion motion;
   const bool shears = step.shears(), skewed = !step.tilt.isZero(0.0) || !step.tilt_growth.isZero(0.0);
   for (std::size_t c = first; c < last; ++c) {
-    fetch(bodies.clumps.clump[std::min(c + ahead, last - 1)], bodies, sum);
+    fetch(bodies.clumps.clump[std::min(c + fetched_ahead, last - 1)], bodies, sum);
     Clump& clump = bodies.clumps.clump[c];
     const MotionSettings& settings = step.of(bodies.clumps.spheres[clump.first]);
     if (settings.prescribed) {

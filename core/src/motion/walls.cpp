@@ -46,7 +46,7 @@ std::array<bool, 3> axes_of(const WallSetup& setup, const std::string& motion, c
   std::array<bool, 3> axes{};
   for (const char letter : letters) {
     if (letter < 'x' || letter > 'z') fail(setup, motion + " along \"" + letters + "\"; allowed is x, y or z");
-    axes[letter - 'x'] = true;
+    axes[as_index(letter - 'x')] = true;
   }
   if (letters.empty()) fail(setup, motion + " has no axis; give one or more of x, y and z");
   return axes;
@@ -257,7 +257,9 @@ Walls::Drive Walls::drive_of(const std::vector<WallSetup>& setups, const WallSet
   }
   for (int axis = 0; axis < 3; ++axis) {
     const bool swings = motion.oscillation && motion.oscillation->amplitude[axis] != 0;
-    if ((motion.velocity[axis] != 0 || swings) + servo[axis] + drive.follow[axis] + drive.free[axis] > 1)
+    if ((motion.velocity[axis] != 0 || swings) + servo[as_index(axis)] + drive.follow[as_index(axis)] +
+            drive.free[as_index(axis)] >
+        1)
       fail(setup, std::string("two motions along ") + "xyz"[axis] +
                       "; choose velocity and oscillation, or one of servo, follow and free");
   }
@@ -296,8 +298,8 @@ WallMotion Walls::expected_motion(std::size_t wall) const {
     expected.spin += peak * motion.oscillation->angle;
   }
   for (int axis = 0; axis < 3; ++axis) {
-    if (how.free[axis]) expected.velocity[axis] = state.velocity[axis];
-    if (how.follow[axis]) expected.velocity[axis] = expected_motion(how.leader).velocity[axis];
+    if (how.free[as_index(axis)]) expected.velocity[axis] = state.velocity[axis];
+    if (how.follow[as_index(axis)]) expected.velocity[axis] = expected_motion(how.leader).velocity[axis];
     if (axis == how.servo_axis)
       expected.velocity[axis] = state.contacts > 0 ? state.velocity[axis] : motion.servo->max_velocity;
   }
@@ -372,8 +374,9 @@ void Walls::drive(double dt, const Ahead& ahead) {
     for (int axis = 0; axis < 3; ++axis) {
       double& velocity = state.velocity[axis];
       if (axis == how.servo_axis) velocity = servo_velocity(setups_[wall], wall, axis, area(wall), state, dt, ahead);
-      else if (how.follow[axis]) velocity = states_[how.leader].velocity[axis];
-      else if (how.free[axis]) velocity += (state.force[axis] + motion.free->load[axis]) / motion.free->mass * dt;
+      else if (how.follow[as_index(axis)]) velocity = states_[how.leader].velocity[axis];
+      else if (how.free[as_index(axis)])
+        velocity += (state.force[axis] + motion.free->load[axis]) / motion.free->mass * dt;
       else {
         velocity = ramp * motion.velocity[axis];
         if (motion.oscillation) velocity += swings[axis] * motion.oscillation->amplitude[axis];

@@ -136,11 +136,13 @@ struct Attribute {
   const char *name, *type;
   int bytes, width;
 };
+namespace attribute {
 constexpr Attribute radius{"radius", "Float", 8, 1}, velocity{"velocity", "Float", 8, 3}, spin{"spin", "Float", 8, 3},
     id{"id", "Int", 8, 1}, material{"material", "Int", 4, 1}, clump{"clump", "Int", 8, 1},
     body_group{"group", "Int", 4, 1}, rotation{"rotation", "Float", 8, 3}, displacement{"displacement", "Float", 8, 3},
     normal_force{"normal_force", "Float", 8, 1}, force{"force", "Float", 8, 3}, branch{"branch", "Float", 8, 3},
     body_a{"body_a", "Int", 8, 1}, body_b{"body_b", "Int", 8, 1};
+}  // namespace attribute
 
 /// The grids of one frame.
 class FrameIndex {
@@ -345,13 +347,16 @@ void Frames::write_xdmf() const {
     if (!instants_[number]) continue;
     const Instant& instant = *instants_[number];
     const FrameIndex index(number, instant.time);
-    std::vector<Attribute> columns{radius, velocity, spin, id, material};
-    if (instant.clump) columns.push_back(clump);
-    if (instant.group) columns.push_back(body_group);
-    if (instant.rotation) columns.push_back(rotation);
-    if (instant.displacement) columns.push_back(displacement);
+    std::vector<Attribute> columns{attribute::radius, attribute::velocity, attribute::spin, attribute::id,
+                                   attribute::material};
+    if (instant.clump) columns.push_back(attribute::clump);
+    if (instant.group) columns.push_back(attribute::body_group);
+    if (instant.rotation) columns.push_back(attribute::rotation);
+    if (instant.displacement) columns.push_back(attribute::displacement);
     grains += index.points("/bodies/", instant.bodies, "position", columns);
-    contacts += index.points("/contacts/", instant.contacts, "middle", {normal_force, force, branch, body_a, body_b});
+    contacts += index.points(
+        "/contacts/", instant.contacts, "middle",
+        {attribute::normal_force, attribute::force, attribute::branch, attribute::body_a, attribute::body_b});
     for (const auto& [name, triangles] : instant.walls) {
       if (triangles == 0) continue;
       std::string attributes;

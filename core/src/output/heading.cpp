@@ -5,8 +5,8 @@
 namespace grit {
 namespace {
 
-constexpr double narrowest = 420;                          // px, of a frame: in less a title breaks into single words
-constexpr double title_letter = 11.8, facts_letter = 6.9;  // approximate widths, px
+constexpr double narrowest = 420;                            // px, of a frame: in less a title breaks into single words
+constexpr double heading_letter = 11.8, facts_letter = 6.9;  // approximate widths, px
 constexpr double first_line = 44, title_line = 26, facts_line = 19;
 constexpr std::string_view between = "  ·  ";
 
@@ -51,7 +51,7 @@ std::size_t letters(std::string_view text) {
 
 Heading::Heading(const std::string& title, const std::string& facts, double inner)
     : width_(std::clamp(inner + 2 * margin, narrowest, widest)),
-      title_(wrapped(title, " ", this->inner() / title_letter)),
+      title_(wrapped(title, " ", this->inner() / heading_letter)),
       facts_(wrapped(facts, between, this->inner() / facts_letter)) {}
 
 double Heading::bottom() const {

@@ -22,7 +22,7 @@ namespace grit {
 namespace {
 
 constexpr double inner_width = Heading::widest - 2 * Heading::margin, axis_wide = 58, axis_high = 50, colour_bar = 92,
-                 panel_gap = 20, tallest = 480,
+                 panel_gap = 20, tallest_panel = 480,
                  label_letter = 8.4;                 // px
 constexpr int few = 4;                               // up to this number wide panels are stacked
 constexpr int most_columns = 3, large_enough = 200;  // of panels; px of the longer side
@@ -30,7 +30,7 @@ constexpr double scale_fraction = 0.98;              // of the cells, in the mid
 constexpr double gap_closed = 0.75;                  // of a cell: wider gaps stay empty
 constexpr double wall_reach = 0.2;                   // of the longer side of the cells' box
 constexpr double wall_margin = 0.02;  // of the longer side of the plot, so that no wall lies on the frame
-constexpr const char* sheet =
+constexpr const char* map_style =
     ".label{font-size:14px;font-weight:600;fill:#222}.axis{font-size:13px;fill:#222}.m{text-anchor:middle}\n"
     ".e{text-anchor:end}.small{font-size:11px;fill:#666}.frame{fill:none;stroke:#8a8a86;stroke-width:1}\n"
     ".wall{stroke:#1c1c1c;stroke-width:2;stroke-linecap:round}.cells rect{shape-rendering:crispEdges}\n";
@@ -120,7 +120,7 @@ Plot plot_of(const MapPicture& picture, int columns) {
     x = {x.low - border, x.high + border}, y = {y.low - border, y.high + border};
   }
   const double space = panel_space(columns) - axis_wide - colour_bar;
-  const double scale = std::min(space / x.span(), tallest / y.span());
+  const double scale = std::min(space / x.span(), tallest_panel / y.span());
   return {x.low, y.high, scale, std::max(1, static_cast<int>(std::lround(scale * x.span()))),
           std::max(1, static_cast<int>(std::lround(scale * y.span())))};
 }
@@ -308,7 +308,7 @@ std::string draw(const MapPicture& whole) {
   const double span_x = plot.wide / plot.scale, span_y = plot.high / plot.scale;
   const std::vector<Tile> tiles = tiles_of(cells_by_pixel(picture.cells, plot), plot);
 
-  Svg svg(heading.width(), bottom, picture.title, std::string(Heading::style) + sheet);
+  Svg svg(heading.width(), bottom, picture.title, std::string(Heading::style) + map_style);
   svg.rectangle({0, 0}, heading.width(), bottom, "fill=\"#fff\"");
   heading.draw(svg);
   for (std::size_t panel = 0; panel < panels.size(); ++panel) {

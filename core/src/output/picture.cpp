@@ -22,7 +22,7 @@
 namespace grit {
 namespace {
 
-constexpr double margin = Heading::margin, widest = Heading::widest - 2 * margin;  // px, between the margins
+constexpr double page_margin = Heading::margin, widest = Heading::widest - 2 * page_margin;  // px, between the margins
 constexpr int classes = 21;  // of colour; odd, so that one is zero
 
 // Colour-blind-safe colours with contrast on white, after Okabe and Ito.
@@ -30,7 +30,7 @@ constexpr std::array<const char*, 6> palette{"#0b5394", "#d55e00", "#00866b", "#
 /// Dash patterns of references.
 constexpr std::array<const char*, 4> dashes{"2 4", "8 3 2 3", "6 4", "12 3"};
 constexpr double peak_width = 0.015, peak_height = 0.05;  // fractions of the x axis and of the curve's range; is_peak()
-constexpr double letter = 6.6;                            // approximate width, px
+constexpr double letter_width = 6.6;                      // approximate width, px
 
 /// Approximate width of an axis title [px].
 double title_wide(const std::string& title) {
@@ -107,11 +107,11 @@ struct Names {
 double legend(Svg* svg, const Names& names, double top) {
   if (!names.tell_apart()) return 0;
   constexpr double sample = 26, row = 20;
-  double x = margin, y = top;
+  double x = page_margin, y = top;
   const auto entry = [&](const std::string& name, bool reference) {
     if (name.empty()) return;
-    const double wide = sample + 7 + letter * static_cast<double>(letters(name));
-    if (x > margin && x + wide > margin + widest) x = margin, y += row;
+    const double wide = sample + 7 + letter_width * static_cast<double>(letters(name));
+    if (x > page_margin && x + wide > page_margin + widest) x = page_margin, y += row;
     if (svg) {
       svg->line({x, y}, {x + sample, y}, fmt::format("class=\"curve {}\"", names.style_of(name, reference)));
       svg->text({x + sample + 7, y + 4}, name);
@@ -187,7 +187,7 @@ class PanelDrawing {
       std::size_t longest = 0;
       for (const double mark : axis.marks) longest = std::max(longest, letters(tick_label(mark, axis.step)));
       const double between = axis.step / (axis.high - axis.low) * (right_ - left_);
-      return letter * static_cast<double>(longest) + 8 < between;
+      return letter_width * static_cast<double>(longest) + 8 < between;
     };
     x_ticks_ = axis_ticks(x_.low, x_.high, AxisEnds::kept, apart);
     x_ = {x_ticks_.low, x_ticks_.high};
@@ -386,7 +386,8 @@ ViewLayout layout(const GrainView& view) {
     result.unit = readable(view.value.unit, std::max(std::abs(result.values.low), std::abs(result.values.high)));
     result.value_title = axis_title(view.value.label, result.unit.unit);
     constexpr double numbers = 64;  // px
-    const double words = std::max(title_wide(result.value_title), letter * static_cast<double>(letters(view.note)));
+    const double words =
+        std::max(title_wide(result.value_title), letter_width * static_cast<double>(letters(view.note)));
     result.bar = bar_gap + std::max(numbers, words);
   }
   result.scale = std::min((widest - result.bar) / result.x.span(), tallest / result.y.span());
@@ -455,7 +456,7 @@ void draw_scale_bar(Svg& svg, const GrainView& view, const ViewLayout& at, doubl
   const std::string label = fmt::format("{:g} {}", length * unit.factor, unit.unit),
                     axes = view.horizontal + " →\u2003" + view.vertical + " ↑";
   svg.text({end + 10, y + 4}, label);
-  const double taken = end + 10 + letter * static_cast<double>(letters(label) + letters(axes) + 2);
+  const double taken = end + 10 + letter_width * static_cast<double>(letters(label) + letters(axes) + 2);
   if (taken < left + at.wide) svg.text({left + at.wide, y + 4}, axes, "class=\"e small\"");
   else svg.text({left, y + 22}, axes, "class=\"small\"");
 }
@@ -513,13 +514,13 @@ std::string draw(const Picture& picture) {
   heading.draw(svg);
   legend(&svg, names, heading.bottom() - 4);
   for (std::size_t i = 0; i < count; ++i) {
-    const Point corner{margin + static_cast<double>(i % columns) * (panel_wide + gap),
+    const Point corner{page_margin + static_cast<double>(i % columns) * (panel_wide + gap),
                        panels_top + static_cast<double>(i / columns) * panel_high};
     if (picture.panels[i].polar) PolarDrawing(svg, picture.panels[i], names, corner, panel_wide, panel_high).draw();
     else PanelDrawing(svg, picture.panels[i], names, corner, panel_wide, panel_high).draw();
   }
   if (picture.grains) {
-    const double left = margin + 0.5 * (heading.inner() - view.bar - view.wide);
+    const double left = page_margin + 0.5 * (heading.inner() - view.bar - view.wide);
     draw_grains(svg, *picture.grains, view, left, grains_top);
     draw_scale_bar(svg, *picture.grains, view, left, grains_top);
     draw_colour_bar(svg, *picture.grains, view, left + view.wide + bar_gap, grains_top);

@@ -25,9 +25,9 @@ bool read_at(std::ifstream& file, std::uint64_t offset, T* numbers, std::size_t 
 
 /// The header of an ELF file; none of another file.
 std::optional<Header> header_of(std::ifstream& file) {
-  Header header;
-  if (!read_at(file, 0, &header, 1) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0) return std::nullopt;
-  return header;
+  Header elf;
+  if (!read_at(file, 0, &elf, 1) || std::memcmp(elf.e_ident, ELFMAG, SELFMAG) != 0) return std::nullopt;
+  return elf;
 }
 
 bool same_machine(const Header& a, const Header& b) {
@@ -39,12 +39,12 @@ bool same_machine(const Header& a, const Header& b) {
 
 std::string elf_fault(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary), own_file(library_file(), std::ios::binary);
-  const auto header = header_of(file), own = header_of(own_file);
-  if (!header) return {};
-  if (own && !same_machine(*header, *own))
+  const auto elf = header_of(file), own = header_of(own_file);
+  if (!elf) return {};
+  if (own && !same_machine(*elf, *own))
     return "is of another machine: expected ELF class " + std::to_string(own->e_ident[EI_CLASS]) + ", machine " +
-           std::to_string(own->e_machine) + ", found class " + std::to_string(header->e_ident[EI_CLASS]) +
-           ", machine " + std::to_string(header->e_machine);
+           std::to_string(own->e_machine) + ", found class " + std::to_string(elf->e_ident[EI_CLASS]) +
+           ", machine " + std::to_string(elf->e_machine);
 
   file.seekg(0, std::ios::end);
   const auto size = static_cast<std::uint64_t>(file.tellg());
@@ -52,16 +52,16 @@ std::string elf_fault(const std::filesystem::path& path) {
     return offset <= size && bytes <= size - offset;
   };
   const std::string incomplete = "is incomplete: it has " + std::to_string(size) + " bytes, ";
-  if (header->e_phentsize != sizeof(Segment)) return "has program headers of another size";
-  std::vector<Segment> segments(header->e_phnum);
-  if (!read_at(file, header->e_phoff, segments.data(), segments.size()))
+  if (elf->e_phentsize != sizeof(Segment)) return "has program headers of another size";
+  std::vector<Segment> segments(elf->e_phnum);
+  if (!read_at(file, elf->e_phoff, segments.data(), segments.size()))
     return incomplete + "and ends before its program headers";
   for (const Segment& segment : segments)
     if (!fits(segment.p_offset, segment.p_filesz))
       return incomplete + "and its segments end at " + std::to_string(segment.p_offset + segment.p_filesz);
-  if (!fits(header->e_shoff, std::uint64_t{header->e_shnum} * header->e_shentsize))
+  if (!fits(elf->e_shoff, std::uint64_t{elf->e_shnum} * elf->e_shentsize))
     return incomplete + "and its section headers end at " +
-           std::to_string(header->e_shoff + std::uint64_t{header->e_shnum} * header->e_shentsize);
+           std::to_string(elf->e_shoff + std::uint64_t{elf->e_shnum} * elf->e_shentsize);
   return {};
 }
 

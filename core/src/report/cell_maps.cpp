@@ -62,7 +62,7 @@ void CellMaps::add(std::size_t frame, const std::string& stage, const std::vecto
       high[i % 3] = std::max(high[i % 3], most);
     }
     std::vector<float> numbers;
-    for (const std::size_t place : {0, 1})
+    for (const std::size_t place : {0u, 1u})
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto all = column(group.fields[place], axis);
         numbers.insert(numbers.end(), all.begin(), all.end());

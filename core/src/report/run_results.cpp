@@ -67,8 +67,8 @@ std::string RunResults::title() const {
 }
 
 bool RunResults::asks_for(const std::string& curve) const {
-  for (const Description& name : at("/description/output/picture/y"))
-    if (name == curve) return true;
+  for (const Description& drawn : at("/description/output/picture/y"))
+    if (drawn == curve) return true;
   for (const Description& reference : at("/description/output/references"))
     if (reference.is_object() && reference.contains("of") && reference["of"] == curve) return true;
   return false;

@@ -15,9 +15,9 @@
 namespace grit {
 namespace {
 
-constexpr const char* axes = "xyz";
+constexpr const char* axis_names = "xyz";
 
-std::string along(const std::string& name, int axis) { return name + '_' + axes[axis]; }
+std::string along(const std::string& name, int axis) { return name + '_' + axis_names[axis]; }
 
 /// The rows of a dataset of vectors.
 class Vectors {

@@ -331,7 +331,8 @@ void Object::get_number(const std::string& name, Number type, void* value) const
 
 Shape Dataset::shape() const {
   const auto extent = owned(H5Dget_space(handle_.id()), H5Sclose, where_, "read the shape");
-  std::vector<hsize_t> dims(checked(H5Sget_simple_extent_ndims(extent.id()), where_, "read the shape"));
+  std::vector<hsize_t> dims(
+      static_cast<std::size_t>(checked(H5Sget_simple_extent_ndims(extent.id()), where_, "read the shape")));
   checked(H5Sget_simple_extent_dims(extent.id(), dims.data(), nullptr), where_, "read the shape");
   return {dims.begin(), dims.end()};
 }

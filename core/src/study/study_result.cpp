@@ -447,10 +447,10 @@ std::size_t StudyResult::count(const char* status) const {
 double StudyResult::scatter(double computed) const { return !alike ? computed : random ? unknown : 0; }
 
 Confidence VariantResult::confidence(double tolerance) const {
-  Confidence worst = Confidence::certain;
+  Confidence least = Confidence::certain;
   for (const auto& [name, one] : deviations)
-    worst = std::max(worst, grit::confidence(one.error, one.standard_error, tolerance));
-  return worst;
+    least = std::max(least, grit::confidence(one.error, one.standard_error, tolerance));
+  return least;
 }
 
 StudyResult evaluate_study(StudyDescription study, const std::filesystem::path& folder,

@@ -225,7 +225,7 @@ TEST_P(ContactLawContract, FrameDoesNotMatter) {
     for (std::size_t f = 0; f + 2 < fields.size(); ++f) {
       if (!fields[f].name.ends_with("_x")) continue;
       const Vec3 v = turn * Vec3(pairs.state(c, f), pairs.state(c, f + 1), pairs.state(c, f + 2));
-      for (int k = 0; k < 3; ++k) pairs.state(c, f + k) = v[k];
+      for (int k = 0; k < 3; ++k) pairs.state(c, f + as_index(k)) = v[k];
     }
   };
   for (std::size_t c = 0; c < there.places(); ++c) rotate_state(there, c);
@@ -623,7 +623,7 @@ TEST_P(ContactLawContract, WallIsLikeAFixedSphere) {
   const double ratio = GetParam().wall_sphere, radius = 0.8, overlap = 0.01;
   const double infinite = std::numeric_limits<double>::infinity();
   const Vec3 velocity(0, 0, 0.2), spin(3, 5, 0);
-  for (const std::size_t surface : {0, 1}) {
+  for (const std::size_t surface : {0u, 1u}) {
     Pairs pairs(*law_, dt_);
     pairs.one_material = false;
     pairs.add({.radius = radius, .velocity = velocity, .spin = spin, .mass = 1.3});
@@ -655,7 +655,7 @@ TEST_P(ContactLawContract, WallIsLikeAFixedSphere) {
 
 TEST_P(ContactLawContract, StiffnessAndEnergyOfAWallFitItsForces) {
   const double radius = 0.8, overlap = 0.01, little = 1e-5;
-  for (const std::size_t surface : {0, 2}) {
+  for (const std::size_t surface : {0u, 2u}) {
     const PairSize size{
         .radius_a = radius, .radius_b = radius, .inverse_mass_a = 1, .inverse_mass_b = 0, .overlap = overlap};
     ASSERT_TRUE(size.wall);

@@ -77,11 +77,11 @@ void Box::container_contacts(const Frame& at, const Sphere& sphere, std::vector<
     if (out[axis] == 0) continue;
     if (std::abs(out[axis]) >= sphere.radius) return;
     const int face = 2 * axis + (out[axis] > 0);
-    if (closed_[face]) behind[axis] = face;
+    if (closed_[as_index(face)]) behind[as_index(axis)] = face;
     else past_rim = true;
   }
   for (int face = 0; face < 6; ++face) {
-    if (!closed_[face]) continue;
+    if (!closed_[as_index(face)]) continue;
     const int axis = face / 2;
     const double above = height(face, local);
     if (!past_rim) {
@@ -126,14 +126,14 @@ bool Box::near(const Pose& pose, const Vec3& centre, double reach) const {
   if (!inside_) return out.norm() <= reach;
   if (out.cwiseAbs().maxCoeff() > reach) return false;
   for (int face = 0; face < 6; ++face)
-    if (closed_[face] && height(face, local) <= reach) return true;
+    if (closed_[as_index(face)] && height(face, local) <= reach) return true;
   return false;
 }
 
 std::vector<Vec3> Box::triangles() const {
   std::vector<Vec3> corners;
   for (int face = 0; face < 6; ++face) {
-    if (!closed_[face]) continue;
+    if (!closed_[as_index(face)]) continue;
     const int axis = face / 2;
     Vec3 a = low_;
     if (face % 2 == 1) a[axis] = high_[axis];

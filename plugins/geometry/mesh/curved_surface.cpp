@@ -53,7 +53,7 @@ VectorXd shares(const Relief& relief, const VectorXd& overlap) {
     for (bool falls = true; falls && !active.empty();) {
       const auto count = static_cast<Index>(active.size());
       Eigen::MatrixXd among(count, count);
-      for (Index a = 0; a < count; ++a) among.col(a) = columns[a](active);
+      for (Index a = 0; a < count; ++a) among.col(a) = columns[as_index(a)](active);
       among.diagonal().array() += ridge;
       const VectorXd from = share(active), to = among.ldlt().solve(overlap(active));
       double part = 1;
@@ -66,7 +66,7 @@ VectorXd shares(const Relief& relief, const VectorXd& overlap) {
       }
       share(active) = from + part * (to - from);
       if (!falls) break;
-      share[active[first]] = 0;
+      share[active[as_index(first)]] = 0;
       active.erase(active.begin() + first), columns.erase(columns.begin() + first);
     }
   }
@@ -86,8 +86,12 @@ class Patch {
     double overlap;
   };
   Index size() const { return static_cast<Index>(facets_.size()); }
-  CurveContact contact(Index i) const { return {facets_[i].away, facets_[i].overlap, number_[i]}; }
-  bool on_one_side(Index i, Index j) const { return facets_[i].away.dot(facets_[j].away) > smooth_cosine_; }
+  CurveContact contact(Index i) const {
+    return {facets_[as_index(i)].away, facets_[as_index(i)].overlap, number_[as_index(i)]};
+  }
+  bool on_one_side(Index i, Index j) const {
+    return facets_[as_index(i)].away.dot(facets_[as_index(j)].away) > smooth_cosine_;
+  }
   Index first_minimum(double least) const;
   VectorXd reliefs(Index from, double squared_sine) const;
   VectorXd links(Index from) const;
@@ -140,7 +144,8 @@ Index Patch::first_minimum(double least) const {
 
 VectorXd Patch::reliefs(Index from, double squared_sine) const {
   VectorXd reliefs(size());
-  for (Index i = 0; i < size(); ++i) reliefs[i] = relief(facets_[i].away, facets_[from].away, squared_sine);
+  for (Index i = 0; i < size(); ++i)
+    reliefs[i] = relief(facets_[as_index(i)].away, facets_[as_index(from)].away, squared_sine);
   return reliefs;
 }
 
@@ -148,11 +153,13 @@ VectorXd Patch::reliefs(Index from, double squared_sine) const {
 VectorXd Patch::links(Index from) const {
   VectorXd least = VectorXd::Zero(size());
   least[from] = overlap_[from];
-  std::vector<std::size_t> reached{static_cast<std::size_t>(from)};
+  std::vector<Index> reached{from};
   for (std::size_t k = 0; k < reached.size(); ++k)
-    for (std::size_t n = first_neighbour_[reached[k]]; n < first_neighbour_[reached[k] + 1]; ++n)
-      if (const auto [next, overlap] = neighbours_[n]; least[next] == 0)
-        least[next] = std::min(least[reached[k]], overlap), reached.push_back(next);
+    for (std::size_t n = first_neighbour_[as_index(reached[k])]; n < first_neighbour_[as_index(reached[k]) + 1]; ++n) {
+      const auto& [facet, overlap] = neighbours_[n];
+      const auto next = static_cast<Index>(facet);
+      if (least[next] == 0) least[next] = std::min(least[reached[k]], overlap), reached.push_back(next);
+    }
   for (Index i = 0; i < size(); ++i)
     least[i] = std::min(1.0, least[i] / (valley_keeps * std::min(overlap_[i], overlap_[from])));
   return least;
@@ -182,7 +189,7 @@ std::vector<Vec3> Patch::far_sides(Index& near) const {
   const auto take = [&](auto belongs) {
     Vec3 side = Vec3::Zero();
     for (Index i = 0; i < size(); ++i)
-      if (share[i] > 0 && belongs(i)) side += share[i] * facets_[i].away, share[i] = 0;
+      if (share[i] > 0 && belongs(i)) side += share[i] * facets_[as_index(i)].away, share[i] = 0;
     return side;
   };
   const Vec3 near_side = take([&](Index i) { return on_one_side(i, near); });
@@ -195,7 +202,7 @@ std::vector<Vec3> Patch::far_sides(Index& near) const {
   if (sides.empty()) return sides;
   const double balance = std::min(1.0, far / (balances * deepest_));
   if (balance == 1) near = first_minimum(as_good_as_deepest * deepest_);
-  sides.front() += balance * (near_side - overlap_[near] * facets_[near].away);
+  sides.front() += balance * (near_side - overlap_[near] * facets_[as_index(near)].away);
   return sides;
 }
 
@@ -205,7 +212,7 @@ void Patch::add_contacts_that_count(std::vector<CurveContact>& found) const {
   if (!relieves_all(near)) sides = far_sides(near);
   found.push_back(contact(near));
   std::vector<bool> used(facets_.size(), false);
-  used[near] = true;
+  used[as_index(near)] = true;
   for (const Vec3& side : sides) {
     const double overlap = side.norm();
     if (!(overlap > little_)) continue;

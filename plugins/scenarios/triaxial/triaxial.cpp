@@ -41,8 +41,8 @@ std::string formula(std::string_view text, int axis) {
   std::string result;
   for (const char c : text) {
     if (c == '$') result += letters[axis];
-    else if (c == '<') result += pairs[axis].low;
-    else if (c == '>') result += pairs[axis].high;
+    else if (c == '<') result += pairs[as_index(axis)].low;
+    else if (c == '>') result += pairs[as_index(axis)].high;
     else result += c;
   }
   return result;
@@ -143,7 +143,7 @@ Description Triaxial::expand() const {
   std::vector<std::string> names;
   for (int axis = 0; axis < 3; ++axis)
     for (const int side : {-1, 1}) {
-      const std::string name = side < 0 ? pairs[axis].low : pairs[axis].high;
+      const std::string name = side < 0 ? pairs[as_index(axis)].low : pairs[as_index(axis)].high;
       Description wall = plane(along(axis, 0.5 * side * cloud[axis]), along(axis, -side), "wall");
       wall["extent"] = cloud.maxCoeff();
       // Stress refers to the present cross-section of the specimen; the walls are larger.
@@ -190,8 +190,8 @@ Description Triaxial::expand() const {
     const bool single = axis == 1 && intermediate_stress_;  // the front is held
     const double needed = (single ? 1 : 0.5) * widening * size_[axis];
     if (needed <= servo_speed(axis)) continue;
-    for (const char* wall : {pairs[axis].low, pairs[axis].high})
-      if (!single || wall == pairs[axis].high)
+    for (const char* wall : {pairs[as_index(axis)].low, pairs[as_index(axis)].high})
+      if (!single || wall == pairs[as_index(axis)].high)
         shear["change"]["walls"][wall]["motion"]["servo"]["max_velocity"] = needed;
   }
   shear["until"] = {

@@ -251,7 +251,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
   using State = typename Law::template State<L>;
   const PairBatch batch = out;  // a copy, which sums cannot alias
   using W = Wide<L>;
-  const L dt(batch.dt), per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
+  const L dt = static_cast<L>(batch.dt), per_dt = static_cast<L>(batch.dt > 0 ? 1 / batch.dt : 0.0);
   const double history_dt = batch.again ? 0 : batch.dt;
   const L turns(batch.again ? 0.0 : 1.0);
   L largest(0.0);
