@@ -55,7 +55,7 @@ void smooth(std::vector<float>& pattern, std::uint32_t stride, std::uint32_t lin
 /// grain shows of it then is on few lines of the cache, whichever way it has turned.
 template <class Index>
 Index kept_at(const Index& i, const Index& j) {
-  constexpr int squares = (fine_tile - 1) & ~7;
+  constexpr int squares = (int{fine_tile} - 1) & ~7;
   return (j & squares) * int{fine_tile} + ((i & squares) << 3) + ((j & 7) << 3) + (i & 7);
 }
 
@@ -108,7 +108,7 @@ Camera::Skin Camera::skin(const Disc& disc) const {
 
 namespace {
 
-constexpr auto width = static_cast<std::ptrdiff_t>(floats_at_once);
+constexpr auto lanes = static_cast<std::ptrdiff_t>(floats_at_once);
 
 /// 0, 1, 2 …
 Floats counted() {
@@ -140,7 +140,7 @@ void Camera::shade(const Skin& skin, float x, float y, std::span<const float> de
   const auto size = static_cast<std::ptrdiff_t>(depth.size());
   for (std::ptrdiff_t done = 0; done < size; done += most) {
     const std::ptrdiff_t count = std::min(most, size - done);
-    for (std::ptrdiff_t k = 0; k < count; k += width) {
+    for (std::ptrdiff_t k = 0; k < count; k += lanes) {
       const Floats along = counted() + static_cast<double>(done + k);
       const Ints at = kept_at(floor(multiply_add(right, along, Floats(u))), floor(multiply_add(up, along, Floats(v))));
       const Places wide = __builtin_convertvector(at, Places);
@@ -148,7 +148,7 @@ void Camera::shade(const Skin& skin, float x, float y, std::span<const float> de
     }
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
       speckle[k] = speckles_[static_cast<std::size_t>(from[k])];
-    for (std::ptrdiff_t k = 0; k < count; k += width) {
+    for (std::ptrdiff_t k = 0; k < count; k += lanes) {
       Bytes steps;
       std::memcpy(&steps, speckle.data() + k, sizeof steps);
       const Floats grey = multiply_add(Floats(most_contrast / 127),
@@ -185,7 +185,7 @@ struct RayColumns {
 /// Whether all that the rays of these columns have met is in front of a disc.
 bool is_hidden(const Disc& disc, const RayColumns& reach, const float* depth) {
   const Floats front = disc.depth - disc.radius;
-  for (std::ptrdiff_t i = reach.first; i <= reach.last; i += width) {
+  for (std::ptrdiff_t i = reach.first; i <= reach.last; i += lanes) {
     const auto in_sight = !(load(depth + i) < front) && counted() <= static_cast<double>(reach.last - i);
     if (detail::bits(in_sight) != 0) return false;
   }
@@ -201,7 +201,7 @@ void meet(const Disc& disc, std::uint32_t n, const RayColumns& reach, double y, 
   const double half = std::sqrt(square);
   const std::ptrdiff_t left = first_ray(disc.x - half, 0), right = last_ray(disc.x + half, columns);
   const Floats depth = disc.depth, most = square, from = place(left) - disc.x;
-  for (std::ptrdiff_t i = left; i <= right; i += width) {
+  for (std::ptrdiff_t i = left; i <= right; i += lanes) {
     const Floats dx = multiply_add(counted() + static_cast<double>(i - left), Floats(1.0f / rays), from);
     const Floats surface = depth - sqrt(max(Floats(0.0), multiply_add(-dx, dx, most))), met = load(row.depth + i);
     const auto nearer = surface < met && counted() <= static_cast<double>(right - i);
@@ -216,7 +216,7 @@ void meet(const Disc& disc, std::uint32_t n, const RayColumns& reach, double y, 
 /// Where those end that meet the same as ray i does.
 std::ptrdiff_t end_of_run(const std::uint32_t* who, std::ptrdiff_t i, std::ptrdiff_t end) {
   const Ints same = static_cast<int>(who[i]) - Ints{};
-  for (; i < end; i += width) {
+  for (; i < end; i += lanes) {
     Ints here;
     std::memcpy(&here, who + i, sizeof here);
     if (const std::uint32_t others = detail::bits(Floats::Mask{here != same}); others != 0)
@@ -293,8 +293,8 @@ Image Camera::picture(std::span<const Disc> discs, std::ptrdiff_t width, std::pt
 
   Image image(width, height);
   Exposure exposure(image);
-  std::vector<float> depth(static_cast<std::size_t>(columns * band_rows + width)),
-      light(static_cast<std::size_t>(columns + width));
+  std::vector<float> depth(static_cast<std::size_t>(columns * band_rows + lanes)),
+      light(static_cast<std::size_t>(columns + lanes));
   std::vector<float> deepest(light.size());  // of each column's rays in a band: most discs are behind that
   std::vector<std::uint32_t> who(depth.size());
   for (std::ptrdiff_t band = 0; band < bands; ++band) {
@@ -318,7 +318,7 @@ Image Camera::picture(std::span<const Disc> discs, std::ptrdiff_t width, std::pt
       if (is_hidden(disc, reach, deepest.data())) continue;
       const auto low = first_ray(disc.y - disc.radius, begin), high = last_ray(disc.y + disc.radius, end);
       for (std::ptrdiff_t j = low; j <= high; ++j) meet(disc, n, reach, place(j), columns, row(j));
-      for (std::ptrdiff_t i = reach.first; i <= reach.last; i += width) {
+      for (std::ptrdiff_t i = reach.first; i <= reach.last; i += lanes) {
         Floats most = load(row(begin).depth + i);
         for (std::ptrdiff_t j = begin + 1; j < end; ++j) most = max(most, load(row(j).depth + i));
         store(most, deepest.data() + i);
