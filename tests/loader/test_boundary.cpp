@@ -468,6 +468,13 @@ TEST(BoundaryOfTheProgram, RefusesChannelsThatCannotBeWritten) {
   }
 }
 
+TEST(BoundaryOfTheProgram, TakesTheFirstListOfChannels) {
+  ::setenv("MORE_CHANNELS", "", 1);
+  const Outcome outcome = run_scene();
+  ::unsetenv("MORE_CHANNELS");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 TEST(BoundaryOfTheProgram, IsNotLeftByExit) {
   const Throwing leaving("sample()", "exit(0)");
   const Outcome outcome = run_scene();

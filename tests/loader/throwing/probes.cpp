@@ -11,7 +11,9 @@ struct Counter final : grit::Probe, grit::LimitedFields {
   std::vector<grit::Channel> channels() const override {
     throwing::here("channels()");
     const char* const name = std::getenv("CHANNEL");
-    return {{name == nullptr ? "bodies" : name, "1", "number of bodies", {}}};
+    std::vector<grit::Channel> all{{name == nullptr ? "bodies" : name, "1", "number of bodies", {}}};
+    if (calls_++ > 0 && std::getenv("MORE_CHANNELS") != nullptr) all.push_back({"more", "1", "nothing", {}});
+    return all;
   }
   void sample(const grit::World& world, grit::ChannelValues& values) override {
     throwing::here("sample()");
@@ -23,6 +25,9 @@ struct Counter final : grit::Probe, grit::LimitedFields {
   }
   void check_fields(const grit::World&) const override { throwing::here("check_fields()"); }
   void serialize(grit::Archive&) override { throwing::here("serialize()"); }
+
+ private:
+  mutable int calls_ = 0;  // of channels()
 };
 
 }  // namespace
