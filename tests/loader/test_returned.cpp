@@ -9,6 +9,7 @@
 #include "grit/error.hpp"
 #include "grit/testing/fake_world.hpp"
 #include "plugins/guarded.hpp"
+#include "plugins/returned.hpp"
 
 namespace grit {
 namespace {
@@ -182,6 +183,18 @@ TEST(ReturnedByAnEngine, IsCheckedAsDescriptionsAre) {
   expect_fault("rates() returned the rate -1", [&] { guard->rates(FakeWorld()); });
   engine->has.damping = unknown;
   expect_fault("rates() returned the rate nan", [&] { guard->rates(FakeWorld()); });
+}
+
+TEST(ReturnedByALaw, HasFieldsAndReachesThatCanBe) {
+  const auto fault = [](const std::vector<StateField>& fields) {
+    return fault_of(std::span<const StateField>(fields));
+  };
+  EXPECT_EQ(fault({{"shear_x", "N", "a force", -1}, {"bond", "1", "whether it holds", 1}}), "");
+  EXPECT_THAT(fault({{"bond", "1", "odd", 0}}), HasSubstr("a field \"bond\" with the factor 0"));
+  EXPECT_THAT(fault({{"bond", "1", "one", 1}, {"bond", "1", "other", 1}}), HasSubstr("which is taken"));
+  EXPECT_EQ(fault_of_not_negative(0), "");
+  for (const double wrong : {-1.0, unknown, infinity})
+    EXPECT_THAT(fault_of_not_negative(wrong), HasSubstr("0 or more"));
 }
 
 struct AnyProbe final : Probe {
