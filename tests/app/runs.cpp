@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "scenes.hpp"
@@ -27,6 +28,13 @@ class Runs : public testing::Test {
   Runs() { folder.write("two.json", two_grains); }
   Outcome grit(std::vector<std::string> words) const { return grit_in(folder.path(), std::move(words)); }
   json run_json(const std::string& results) const { return json::parse(text_of(folder / (results + "/run.json"))); }
+  /// Of all files below a folder.
+  std::map<std::string, std::string> contents(const std::string& name) const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / name))
+      if (entry.is_regular_file()) files[entry.path().string()] = text_of(entry.path());
+    return files;
+  }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
 
   OwnFolder folder;
@@ -140,6 +148,24 @@ TEST_F(Runs, DoNotReplaceOthersWithoutOverwrite) {
   EXPECT_EQ(text_of(folder / "results/two/run.json"), before);
   EXPECT_EQ(grit({"run", "two.json", "--overwrite"}).status, 0);
   EXPECT_NE(text_of(folder / "results/two/run.json"), before);
+}
+
+TEST_F(Runs, KeepOldResultsUntilNothingCanBeRefused) {
+  ASSERT_EQ(grit({"run", "two.json"}).status, 0);
+  const auto before = contents("results/two");
+  for (const std::string set :
+       {R"(/output/summary=["packing/nothing"])", R"(/engines/field={"type": "force-field", "x": "x +"})",
+        R"(/engines/field={"type": "force-field", "x": "nothing"})",
+        R"(/probes/cells={"type": "stress", "every_steps": 50, "region_low": [0, 0, 0], "region_high": [1, 1, 1]})",
+        R"(/time_step/value=1)", R"(/bodies/grains/source/bodies/1/position=[0, 0, 0])"}) {
+    const auto refused = grit({"run", "two.json", "--overwrite", "--set", set});
+    EXPECT_EQ(refused.status, 2) << set << refused.err;
+    EXPECT_EQ(contents("results/two"), before) << set;
+  }
+  const auto refused =
+      shell(folder.path(), "ulimit -S -v 1500000; \"" GRIT_BINARY "\" run two.json --overwrite --quiet --threads 1000");
+  EXPECT_NE(refused.status, 0);
+  EXPECT_EQ(contents("results/two"), before) << "threads: " << refused.err;
 }
 
 TEST_F(Runs, TouchNoFileThatTheyDidNotWrite) {

@@ -160,11 +160,50 @@ TEST(ResultsFolder, RefusesAFolderThatHoldsARun) {
               AllOf(HasSubstr("run: holds a run already (run.json)"), HasSubstr("choose another folder")));
   auto again = options(folder / "run");
   again.existing = Existing::overwrite;
-  ResultsFolder results(again);
-  EXPECT_FALSE(std::filesystem::exists(folder / "run/series.h5"));
+  ResultsFolder(again).begin(world, probes);
   EXPECT_FALSE(std::filesystem::exists(folder / "run/checkpoint.h5"));
   EXPECT_FALSE(std::filesystem::exists(folder / "run/grains.pvd"));
   EXPECT_EQ(text_of(folder / "run/notes.txt"), "mine");
+}
+
+/// Names and contents of all files below a folder.
+std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files[entry.path().string()] = text_of(entry.path());
+  return files;
+}
+
+TEST(ResultsFolder, KeepsTheOldResultsOfARunThatDoesNotBegin) {
+  const Folder folder;
+  const auto world = world_of_two();
+  ResultsFolder(options(folder / "run")).begin(world, probes);
+  std::ofstream(folder / "run/checkpoint.h5") << "old";
+  const auto before = files_in(folder / "run");
+  auto again = options(folder / "run");
+  again.existing = Existing::overwrite;
+  { const ResultsFolder never_begun(again); }
+  EXPECT_EQ(files_in(folder / "run"), before);
+  again.picture->x = "test/no_channel";
+  EXPECT_THROW(ResultsFolder(again).begin(world, probes), Error);
+  EXPECT_EQ(files_in(folder / "run"), before);
+  again.picture.reset();
+  ResultsFolder late(again);
+  std::ofstream(folder / "run/frames/photo.jpg") << "mine";
+  EXPECT_THAT(error_of<FileError>([&] { late.begin(world, probes); }), HasSubstr("frames/photo.jpg"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/series.h5"));
+}
+
+TEST(ResultsFolder, LeavesNothingIfItCannotBegin) {
+  const Folder folder;
+  auto world = world_of_two();
+  // Two probes of one name have no place in one file, which is found after run.json is written.
+  const std::vector<ProbeGroup> twice{probes[0], probes[0]};
+  auto wanted = options(folder / "run");
+  wanted.picture.reset();
+  EXPECT_THROW(ResultsFolder(wanted).begin(world, twice), FileError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "run"));
+  ResultsFolder(wanted).begin(world, probes);
 }
 
 TEST(ResultsFolder, IsOfOneRunAtATime) {
@@ -256,12 +295,7 @@ struct KilledRun {
   std::vector<int> steps() const {
     return hdf5::File(folder / "run/series.h5", hdf5::Mode::read).group("test").dataset("step").read<int>();
   }
-  std::map<std::string, std::string> files() const {
-    std::map<std::string, std::string> all;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "run"))
-      if (entry.is_regular_file()) all[entry.path().string()] = text_of(entry.path());
-    return all;
-  }
+  std::map<std::string, std::string> files() const { return files_in(folder / "run"); }
 
   const Folder folder;
   NumberedWorld world = world_of_two();

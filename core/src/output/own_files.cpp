@@ -1,7 +1,11 @@
 #include "output/own_files.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <string_view>
@@ -116,7 +120,11 @@ constexpr const char* not_own = "grit did not write this file";
 
 void refuse_foreign_frames(const fs::path& folder) {
   std::error_code none;
-  if (is_there(folder) && !fs::is_directory(folder, none)) refuse(folder, not_own);
+  if (!is_there(folder)) return;
+  if (!fs::is_directory(folder, none)) refuse(folder, not_own);
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)  // before the other results are removed
+    throw FileError(folder.string() + ": cannot change it: " + std::strerror(errno) +
+                    "; allow it, or choose another folder (--out DIR)");
   for (const auto& path : entries(folder))
     if (!is_file(path) || !is_frame(path.filename().string())) refuse(path, not_own);
 }

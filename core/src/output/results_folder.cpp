@@ -87,22 +87,32 @@ ResultsFolder::ResultsFolder(ResultsOptions options)
     : options_(std::move(options)),
       made_(made(options_.folder)),
       lock_(options_.folder),
-      run_json_(checked(options_, lock_) / "run.json", options_.facts) {
-  if (options_.existing == Existing::resume) return;
+      run_json_(checked(options_, lock_) / "run.json", options_.facts) {}
+
+ResultsFolder::~ResultsFolder() {
+  if (!begun_ && options_.existing != Existing::resume) discard();
+}
+
+void ResultsFolder::take_over() {
+  refuse_foreign_files(options_.folder);  // some may be new: the simulation takes long to make
   const bool replaces = holds_a_run(options_.folder);
   run_json_.announce();  // first, so that a folder in which the run is killed is known as its own
+  announced_ = true;
   if (replaces) remove_results(options_.folder);
   write_description();
 }
 
-ResultsFolder::~ResultsFolder() {
-  if (!series_ && options_.existing != Existing::resume) discard();
-}
-
 void ResultsFolder::discard() noexcept {
   std::error_code none;
-  for (const char* file : {"run.json", "description.json", "series.journal"})
-    std::filesystem::remove(options_.folder / file, none);
+  if (announced_) try {
+      journal_.reset(), series_.reset(), frames_.reset();
+      remove_results(options_.folder);
+      std::filesystem::remove(options_.folder / "frames", none);
+      std::filesystem::remove(options_.folder / "description.json", none);
+      std::filesystem::remove(options_.folder / "run.json", none);  // last, for the same reason
+    } catch (const FileError&) {
+      return;  // what is left is known as its own
+    }
   for (const auto& folder : made_) std::filesystem::remove(folder, none);  // if it is empty
 }
 
@@ -126,11 +136,13 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
     for (std::size_t i = 0; i < kept_.size() && i < resumed_.steps.size(); ++i)
       kept_[i].steps = resumed_.steps[i], kept_[i].values = resumed_.values[i];
   } else {
+    take_over();
     journal_.emplace(options_.folder / "series.journal");
     series_.emplace(options_.folder / "series.h5", probes, options_.flushing);
     frames_.emplace(options_.folder, options_.walls, 0, options_.formats);
   }
   run_json_.begin(world, resumes);
+  begun_ = true;
   if (!resumes) return;
   write_description();
   // The damaged one must not become the one before the next.

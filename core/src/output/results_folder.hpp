@@ -54,7 +54,7 @@ struct ResultsOptions {
 /// Removes from the folder of a run that is done what it needed to be resumed. Throws FileError.
 void remove_checkpoints(const std::filesystem::path& folder);
 
-/// Writes at the start run.json and description.json; during the run series.h5, frames/, frames.xdmf, grains.pvd and
+/// Writes in begin() run.json and description.json; during the run series.h5, frames/, frames.xdmf, grains.pvd and
 /// walls.pvd for VTK, run.json, series.journal, checkpoint.h5 and the one before it, checkpoint-previous.h5; at the end
 /// packing.txt (`x y z radius` in m, by id, in full precision; not for a failed run), picture.svg, and run.json last,
 /// so that its status implies that the rest is complete. When the run is done, final.h5 has its last state and the
@@ -62,16 +62,17 @@ void remove_checkpoints(const std::filesystem::path& folder);
 /// FileError for write errors.
 class ResultsFolder final : public Recorder {
  public:
-  /// Creates the folder. Throws FileError if that fails, if another run is writing to it, if it holds a run and
-  /// `existing` is refuse, or if a file that no run wrote would be lost.
+  /// Creates the folder; what it holds stays as it is. Throws FileError if that fails, if another run is writing to it,
+  /// if it holds a run and `existing` is refuse, or if a file that no run wrote would be lost.
   explicit ResultsFolder(ResultsOptions options);
-  /// If begin() was never called, removes the files and folders that were created, so that a run that does not reach
-  /// its first step leaves nothing behind.
+  /// Unless begin() succeeded, removes the files and folders that were created, so that a run that does not reach its
+  /// first step leaves nothing behind.
   ~ResultsFolder() override;
 
   const FolderLock& lock() const { return lock_; }
 
-  /// Throws Error for a channel of the picture that no probe has, or that is not a single value.
+  /// The results of another run are removed only here, when all that can be refused has been. Throws Error for a
+  /// channel of the picture that no probe has, or that is not a single value.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override;
@@ -103,6 +104,8 @@ class ResultsFolder final : public Recorder {
 
   void draw_picture(const World& world, const RunSummary& summary) const;
 
+  /// Makes the folder that of this run: what another one left is removed.
+  void take_over();
   void write_description() const;
   void restore(std::span<const ProbeGroup> probes);
   /// Returns when these files of the folder are on disk, as far as they exist.
@@ -121,6 +124,8 @@ class ResultsFolder final : public Recorder {
   BodyValues color_values_;
   std::uint64_t color_step_ = 0;
   Extent resumed_;
+  bool announced_ = false;  ///< run.json is of this run
+  bool begun_ = false;
 };
 
 }  // namespace grit
