@@ -190,6 +190,48 @@ TEST_F(Runs, TouchNoFileThatTheyDidNotWrite) {
   EXPECT_EQ(text_of(folder / "mine/photo.jpg"), "mine");
 }
 
+TEST_F(Runs, ReplaceWhatARunThatBrokeOffAtOnceLeft) {
+  ASSERT_EQ(grit({"run", "two.json"}).status, 0);
+  auto begun = text_of(folder / "results/two/run.json");
+  begun.replace(begun.find("done"), 4, "running");
+  const std::string part = begun.substr(0, 512), lost;  // a machine that stops leaves empty files
+  for (const std::map<std::string, std::string>& left : std::vector<std::map<std::string, std::string>>{
+           {{"run.json.part", ""}},
+           {{"run.json.part", part}},
+           {{"run.json", lost}},
+           {{"run.json", begun}, {"description.json.part", ""}},
+           {{"run.json", lost}, {"description.json", lost}, {"series.journal", lost}, {"series.h5", lost}}}) {
+    for (const auto& [name, text] : left) folder.write("left/" + name, text);
+    const auto outcome = grit({"run", "two.json", "--out", "left", "--overwrite"});
+    EXPECT_EQ(outcome.status, 0) << left.rbegin()->first << outcome.err;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "left"))
+      EXPECT_THAT(entry.path().string(), Not(EndsWith(".part")));
+    std::filesystem::remove_all(folder / "left");
+    for (const auto& [name, text] : left) folder.write("left/" + name, text);
+    const auto resumed = grit({"run", "--resume", "left"});
+    EXPECT_NE(resumed.status, 0) << left.rbegin()->first;
+    if (!left.contains("description.json"))
+      EXPECT_THAT(resumed.err, HasSubstr("start the run again with its description: 'grit run FILE --out left "
+                                         "--overwrite'"));
+    std::filesystem::remove_all(folder / "left");
+  }
+}
+
+TEST_F(Runs, LeaveNothingOnADiskThatIsFullAtOnce) {
+  std::filesystem::create_directory(folder / "small");
+  const std::string in_a_small_disk = "unshare -rm bash -c 'mount -t tmpfs -o size=";
+  if (shell(folder.path(), in_a_small_disk + "8k tmpfs small'").status != 0) GTEST_SKIP() << "no mounts for this user";
+  for (const char* size : {"4k", "8k", "12k", "16k", "20k", "24k"}) {
+    const auto outcome = shell(folder.path(), in_a_small_disk + size +
+                                                  " tmpfs small && ! \"" GRIT_BINARY
+                                                  "\" run two.json --set /output/frames=null --out small/results && "
+                                                  "test -z \"$(ls small)\" && mount -o remount,size=4m small && "
+                                                  "\"" GRIT_BINARY "\" run two.json --out small/results --overwrite'");
+    EXPECT_EQ(outcome.status, 0) << size << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("No space left on device")) << size;
+  }
+}
+
 TEST_F(Runs, KeepTheFilesOfOthersInAFolderThatIsOverwritten) {
   ASSERT_EQ(grit({"run", "two.json"}).status, 0);
   const auto before = text_of(folder / "results/two/run.json");

@@ -6,6 +6,7 @@
 #include "input/scene.hpp"
 #include "output/folder_lock.hpp"
 #include "output/own_files.hpp"
+#include "output/shell_word.hpp"
 
 namespace grit {
 namespace {
@@ -22,6 +23,11 @@ RunJob job_of(const std::string& word, const Options& options) {
     job.folder = std::filesystem::path(word).lexically_normal();
     if (job.folder.filename().empty()) job.folder = job.folder.parent_path();
     job.file = (job.folder / "description.json").string();
+    if (!std::filesystem::exists(job.file))
+      throw FileError(job.file +
+                      ": there is no such file, so that no run can continue in this folder; start the run "
+                      "again with its description: 'grit run FILE --out " +
+                      shell_word(job.folder.string()) + " --overwrite'");
     return job;
   }
   job.file = word;

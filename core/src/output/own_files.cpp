@@ -79,6 +79,29 @@ bool is_run_json(const std::optional<Description>& json) {
          json->at("status").is_string();
 }
 
+/// Whether a file has this text near its beginning.
+bool has_mark(const fs::path& path, std::string_view mark) {
+  std::string head(4096, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head.find(mark) != std::string::npos;
+}
+
+/// There is nothing to lose: it is of a run, or a machine, that stopped while it was written.
+bool is_empty_file(const fs::path& path) {
+  std::error_code none;
+  return is_file(path) && fs::file_size(path, none) == 0;
+}
+
+/// As RunJson begins.
+constexpr const char* run_json_beginning = "{\n  \"status\": \"running\",\n  \"message\": \"\"";
+
+/// Whether a run was killed while it wrote its first file.
+bool is_begun_run_json(const fs::path& path) {
+  return path.filename() == temporary_path("run.json") && is_file(path) && has_mark(path, run_json_beginning);
+}
+
 bool is_state(const fs::path& path) {
   if (!is_file(path)) return false;
   try {
@@ -94,20 +117,10 @@ constexpr const char* earlier_picture =
     "text{font-family:'Helvetica Neue',Helvetica,Arial,'Liberation Sans','DejaVu Sans'";
 constexpr const char* earlier_page = "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src";
 
-/// Whether a file has this text near its beginning.
-bool has_mark(const fs::path& path, std::string_view mark) {
-  std::string head(4096, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  return head.find(mark) != std::string::npos;
-}
-
 bool is_own_page(fs::path path) {
   if (path.extension() == ".png") path.replace_extension(".svg");
   if (!is_file(path)) return false;
-  std::error_code none;
-  if (fs::file_size(path, none) == 0) return true;  // lost when the machine crashed; there is nothing to lose
+  if (is_empty_file(path)) return true;
   if (path.extension() == ".svg") return has_mark(path, picture_mark) || has_mark(path, earlier_picture);
   return has_mark(path, page_mark) || has_mark(path, earlier_page);
 }
@@ -150,7 +163,9 @@ bool holds_a_run(const fs::path& folder) {
 void refuse_foreign_files(const fs::path& folder) {
   const bool has_run = holds_a_run(folder);
   for (const std::string& name : names_of_a_run())
-    if (is_there(folder / name) && !(has_run && is_file(folder / name))) refuse(folder / name, not_own);
+    if (const auto path = folder / name;
+        is_there(path) && !is_empty_file(path) && !is_begun_run_json(path) && !(has_run && is_file(path)))
+      refuse(path, not_own);
   for (const char* page : {"picture.svg", "report.html"})
     if (is_there(folder / page) && !is_own_page(folder / page)) refuse(folder / page, not_own);
   refuse_foreign_frames(folder / "frames");
