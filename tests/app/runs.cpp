@@ -434,9 +434,53 @@ TEST_P(Interrupted, RunsAreSaved) {
     EXPECT_THAT(entry.path().string(), Not(EndsWith(".part")));
 }
 
-INSTANTIATE_TEST_SUITE_P(By, Interrupted, testing::Values(SIGINT, SIGTERM, SIGHUP), [](const auto& info) {
-  return info.param == SIGINT ? "CtrlC" : info.param == SIGTERM ? "Termination" : "Hangup";
+INSTANTIATE_TEST_SUITE_P(By, Interrupted, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGXCPU), [](const auto& info) {
+  return info.param == SIGINT    ? "CtrlC"
+         : info.param == SIGTERM ? "Termination"
+         : info.param == SIGHUP  ? "Hangup"
+                                 : "ComputingTime";
 });
+
+TEST_F(Runs, GoOnWithoutAReaderOfTheirOutput) {
+  const auto outcome = shell(folder.path(),
+                             "mkfifo output; exec 3<>output 4>output 3<&-;"  // a pipe whose reader has ended
+                             " \"" GRIT_BINARY "\" run two.json >&4 2>&4");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(run_json("results/two").at("status"), "done");
+  EXPECT_TRUE(exists("results/two/report.html"));
+}
+
+TEST_F(Runs, WriteNoMessagesIntoResultsWhenTheirOutputIsClosed) {
+  const auto outcome = shell(folder.path(), "\"" GRIT_BINARY "\" run two.json 0<&- >&- 2>&-");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(grit({"report", "results/two"}).status, 0);
+  EXPECT_EQ(run_json("results/two").at("status"), "done");
+}
+
+TEST_F(Runs, AreSavedWhenCtrlCEndsTheReaderOfTheirOutputFirst) {
+  Program program({"bash", "-c",
+                   "mkfifo output; exec 3<>output 4>output; \"" GRIT_BINARY
+                   "\" run two.json --set '/stages/0/until={\"type\": \"time\", \"value\": \"1000 h\"}' --set "
+                   "'/stages/0/limit=\"2000 h\"' --set /output/frames/every_steps=100000000 --set "
+                   "/probes/packing/every_steps=10000 >&4 2>&4 3<&- & "
+                   "while read -r line <&3; do [[ $line == *'1/1 part'* ]] && break; done; "
+                   "exec 3<&- 4>&-; kill -INT $!; wait $!"},
+                  folder.path());
+  EXPECT_EQ(program.finish().status, 130);
+  EXPECT_EQ(run_json("results/two").at("status"), "interrupted");
+  EXPECT_TRUE(exists("results/two/report.html"));
+}
+
+TEST_F(Runs, ReportAFileBeyondTheAllowedSize) {
+  const auto outcome = shell(folder.path(), "ulimit -f 40; \"" GRIT_BINARY
+                                            "\" run two.json --set /output/checkpoint_every=1e-6 --set "
+                                            "/stages/0/until/value=2000");
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("File too large"), HasSubstr("continue from the last checkpoint: 'grit run --resume "
+                                                           "results/two'")));
+  EXPECT_EQ(grit({"run", "--resume", "results/two"}).status, 0);
+}
 
 TEST_F(Runs, EndAtOnceWhileTheirBodiesArePlaced) {
   auto scene = json::parse(two_grains);

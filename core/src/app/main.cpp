@@ -1,4 +1,6 @@
 // grit: the command line.
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -7,6 +9,7 @@
 
 #include "app/command.hpp"
 #include "app/early_exit.hpp"
+#include "app/interrupt.hpp"
 #include "format/resources.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
@@ -101,7 +104,8 @@ ExitStatus report(const std::function<ExitStatus()>& work) {
   try {
     const ExitStatus status = work();
     // With redirected output a full disk may only show here.
-    if (!std::cout.flush()) throw FileError("standard output cannot be written; is the disk full?");
+    if (!std::cout.flush() && !has_no_reader(STDOUT_FILENO))
+      throw FileError("standard output cannot be written; is the disk full?");
     return status;
   } catch (const UsageError& error) {
     return say(error.what(), ExitStatus::usage);
@@ -134,6 +138,7 @@ ExitStatus report(const std::function<ExitStatus()>& work) {
 }  // namespace grit
 
 int main(int count, char** arguments) {
+  grit::prepare_outputs();
   grit::refuse_early_exit();
   return grit::finish(grit::report([&] { return grit::main({arguments + 1, arguments + count}); }));
 }

@@ -257,6 +257,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
 
 ExitStatus run_command(const std::vector<std::string>& words) {
   namespace po = boost::program_options;
+  outlive_readers();
   Options options(command("run"));
   options.add()("out", po::value<std::string>()->value_name("DIR"),
                 "folder of the results; for several descriptions, a folder in it for each; default: results/NAME")(

@@ -257,6 +257,7 @@ ExitStatus do_in_parallel(const StudyPlace& place, const std::vector<StudyRun>& 
 
 ExitStatus study_command(const std::vector<std::string>& words) {
   namespace po = boost::program_options;
+  outlive_readers();
   Options options(command("study"));
   const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
   options.add()("out", po::value<std::string>()->value_name("DIR"),
