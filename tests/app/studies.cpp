@@ -392,12 +392,11 @@ TEST_F(Studies, ContinueRunsThatWereInterrupted) {
   // The same command as the study's, which interrupts its runs when it is interrupted.
   const std::string finest = "results/study/runs/finest/seed-1";
   Program program(
-      grit_with({"run", "two.json", "--out", finest, "--no-report", "--set", "/seed=1", "--set",
-                 "/time_step/safety=0.0005", "--set", R"(/stages/0/until={"type": "time", "value": "2 ms"})"}),
+      grit_with({"run", "two.json", "--out", finest, "--overwrite", "--quiet", "--no-report", "--set", "/seed=1",
+                 "--set", "/time_step/safety=0.0005", "--set", R"(/stages/0/until={"type": "time", "value": "2 ms"})"}),
       folder.path());
-  ASSERT_TRUE(program.wait_for("part"));
-  program.interrupt();
-  ASSERT_EQ(program.finish().status, 130);
+  Outcome interrupted;
+  ASSERT_NO_FATAL_FAILURE(interrupt_after(program, folder / (finest + "/series.h5"), interrupted));
   const auto run = [&] { return json::parse(text_of(folder / (finest + "/run.json"))); };
   ASSERT_EQ(run().at("status"), "interrupted");
   const auto outcome = grit({"study", "study.json"});
@@ -418,11 +417,10 @@ TEST_F(Studies, ContinueRunsThatWereKilled) {
   const auto run = [&] { return json::parse(text_of(folder / (finest + "/run.json"))); };
   const auto kill_one = [&] {
     Program program(
-        grit_with({"run", "two.json", "--out", finest, "--overwrite", "--no-report", "--threads", "1", "--set",
-                   "/seed=1", "--set", "/time_step/safety=0.0002", "--set", "/output/checkpoint_every=20 ms", "--set",
-                   R"(/stages/0/until={"type": "time", "value": "2 ms"})"}),
+        grit_with({"run", "two.json", "--out", finest, "--overwrite", "--quiet", "--no-report", "--threads", "1",
+                   "--set", "/seed=1", "--set", "/time_step/safety=0.0002", "--set", "/output/checkpoint_every=20 ms",
+                   "--set", R"(/stages/0/until={"type": "time", "value": "2 ms"})"}),
         folder.path());
-    ASSERT_TRUE(program.wait_for("part"));
     const auto given_up = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (!std::filesystem::exists(folder / (finest + "/checkpoint.h5")))
       ASSERT_LT(std::chrono::steady_clock::now(), given_up);
@@ -472,7 +470,6 @@ TEST_F(Studies, RunAgainWhatAnotherBuildOfAPluginMade) {
 TEST_F(Studies, TouchNoFileThatTheyDidNotWrite) {
   for (const std::string name : {"study.json", "study.csv", "study.html", "runs/usual/seed-1/log.txt"}) {
     folder.write("results/study/" + name, "mine");
-    if (name.ends_with("log.txt")) folder.write("results/study/runs/usual/seed-1/photo.jpg", "mine");
     const auto refused = grit({"study", "study.json"});
     EXPECT_EQ(refused.status, 5) << name;
     EXPECT_THAT(refused.err, HasSubstr("results/study/" + name + ": "));
@@ -485,6 +482,46 @@ TEST_F(Studies, TouchNoFileThatTheyDidNotWrite) {
     EXPECT_EQ(grit({"study", "study.json"}).status, 5) << "a named pipe, which may have no writer";
     std::filesystem::remove_all(folder / "results/study");
   }
+}
+
+TEST_F(Studies, KeepPagesThatTheyDidNotWriteBesideTheirOwnResults) {
+  ASSERT_EQ(grit({"study", "study.json", "--quiet"}).status, 0);
+  ASSERT_EQ(grit({"study", "study.json", "--quiet"}).status, 0) << "its own page is replaced";
+  folder.write("results/study/study.html", "mine");
+  for (const char* option : {"--quiet", "--collect"}) {
+    const auto refused = grit({"study", "study.json", option});
+    EXPECT_EQ(refused.status, 5) << option;
+    EXPECT_THAT(refused.err, HasSubstr("results/study/study.html: grit did not write this file"));
+    EXPECT_EQ(text_of(folder / "results/study/study.html"), "mine");
+  }
+}
+
+TEST_F(Studies, KeepRunsThatNoStudyBegan) {
+  const std::string usual = "results/study/runs/usual/seed-1";
+  const auto expect_kept = [&](const std::string& named, const std::string& run) {
+    const auto before = text_of(folder / (run + "/run.json"));
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"study", "study.json"}, {"study", "study.json", "--only", "runs/usual/seed-1"}}) {
+      const auto refused = grit(words);
+      EXPECT_EQ(refused.status, 5) << words.back() << refused.err;
+      EXPECT_THAT(refused.err, AllOf(HasSubstr(named + ": no study "), HasSubstr("--out")));
+    }
+    EXPECT_EQ(text_of(folder / (run + "/run.json")), before);
+    EXPECT_FALSE(std::filesystem::exists(folder / "results/study/runs/finest/seed-1")) << "nothing was begun";
+  };
+  ASSERT_EQ(grit({"run", "two.json", "--out", usual, "--quiet"}).status, 0);
+  expect_kept(usual, usual);
+  folder.write(usual + "/log.txt", "mine");
+  expect_kept(usual, usual);
+  std::filesystem::remove_all(folder / usual);
+  ASSERT_EQ(grit({"run", "two.json", "--out", "mine", "--quiet"}).status, 0);
+  std::filesystem::create_directory_symlink(folder / "mine", folder / usual);
+  expect_kept(usual, "mine");
+  std::filesystem::remove_all(folder / "results/study/runs/usual");
+  std::filesystem::create_directories(folder / "others");
+  std::filesystem::rename(folder / "mine", folder / "others/seed-1");
+  std::filesystem::create_directory_symlink(folder / "others", folder / "results/study/runs/usual");
+  expect_kept("results/study/runs/usual", "others/seed-1");
 }
 
 TEST_F(Studies, AreNotCollectedWithoutAnyRun) {

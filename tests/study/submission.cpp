@@ -32,6 +32,9 @@ TEST(RunCommand, IsThatOfOneRun) {
                           "--no-report", "--threads", "2", "--plugin-path", "/plug ins", "--set", "/seed=1", "--set",
                           "/a=\"b\""));
   EXPECT_THAT(run_words(with, "box.json", "out", {}, false), testing::Contains("--overwrite"));
+  EXPECT_TRUE(is_of_study(run_words(with, "box.json", "out", {}, false)));
+  EXPECT_TRUE(is_of_study(run_words({"/bin/grit"}, "box.json", "out", {"/seed=1"}, true)));
+  EXPECT_FALSE(is_of_study({"/bin/grit", "run", "box.json", "--out", "out", "--overwrite", "--threads", "2"}));
   EXPECT_THAT(task_words(with, "study.json", "out"),
               ElementsAre("/bin/grit", "study", "study.json", "--out", "out", "--threads", "2", "--plugin-path",
                           "/plug ins", "--only"));

@@ -88,10 +88,12 @@ bool is_own_table(const std::filesystem::path& path) {
   return head.starts_with("variant,") && head.find(",metric,") != std::string::npos;
 }
 
-/// Of a run that did not begin there is only the log.
+/// Of a run that did not begin there is only the log, with its messages.
 bool is_own_log(const std::filesystem::path& log) {
+  if (holds_a_run(log.parent_path())) return true;
   const std::filesystem::directory_iterator entries(log.parent_path());
-  return holds_a_run(log.parent_path()) || std::distance(begin(entries), end(entries)) == 1;
+  const std::string text = text_of(log);
+  return std::distance(begin(entries), end(entries)) == 1 && (text.empty() || text.find("grit: ") != text.npos);
 }
 
 std::filesystem::path log_of(const StudyRun& run) { return run.folder / "log.txt"; }
@@ -106,8 +108,8 @@ void refuse_foreign_files_of_study(const std::filesystem::path& out, const std::
   };
   check(out / "study.json", is_own_json);
   check(out / "study.csv", is_own_table);
-  if (!std::filesystem::exists(out / "study.json")) refuse_foreign_page(out / "study.html");
-  for (const StudyRun& run : runs) check(log_of(run), is_own_log);
+  refuse_foreign_page(out / "study.html");
+  for (const StudyRun& run : runs) refuse_foreign_run(run.folder), check(log_of(run), is_own_log);
 }
 
 /// Throws FileError, also if the first finished run lacks a channel of a metric.

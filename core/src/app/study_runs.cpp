@@ -24,6 +24,7 @@
 #include "input/places.hpp"
 #include "kernel/kernel.hpp"
 #include "output/checkpoint.hpp"
+#include "output/own_files.hpp"
 #include "output/read_results.hpp"
 #include "output/reference_curve.hpp"
 #include "output/run_facts.hpp"
@@ -312,6 +313,28 @@ std::map<std::filesystem::path, std::string> unusable_runs(const StudyPlace& pla
   return unusable;
 }
 
+void refuse_foreign_run(const std::filesystem::path& folder) {
+  const auto refuse = [](const std::filesystem::path& at, const char* what) {
+    throw FileError(at.string() + what +
+                    ", which this study would replace; move it away, or choose another folder with --out");
+  };
+  std::error_code none;
+  for (const auto& at : {folder.parent_path(), folder})
+    if (std::filesystem::is_symlink(at, none)) refuse(at, ": no study made this symbolic link: it leads to results");
+  if (!holds_a_run(folder)) return;
+  const auto run = read_run_json(folder);
+  const auto commands = run ? run->value("commands", Description()) : Description();
+  const bool is_own = commands.is_array()
+                          ? std::ranges::any_of(commands,
+                                                [](const Description& words) {
+                                                  return words.is_array() &&
+                                                         std::ranges::all_of(words, &Description::is_string) &&
+                                                         is_of_study(words.get<std::vector<std::string>>());
+                                                })
+                          : std::filesystem::exists(folder / "log.txt", none);  // of earlier versions
+  if (!is_own) refuse(folder, ": no study began this run");
+}
+
 ExitStatus do_only(const StudyPlace& place, const std::string& within, const Options& options,
                    const Registry& registry) {
   const auto wanted = (std::filesystem::path(within) / "").lexically_normal().parent_path();
@@ -334,6 +357,7 @@ ExitStatus do_only(const StudyPlace& place, const std::string& within, const Opt
     std::cout << folder.string() << (done ? ": already complete\n" : ": has failed already; see run.json there\n");
     return done ? ExitStatus::done : ExitStatus::numerics;
   }
+  refuse_foreign_run(folder);
   const auto words = run_words(run_program(options), place.study.scene, folder, sets_of(place.study, variant, seed),
                                so_far == Progressed::begun);
   std::vector<char*> arguments;

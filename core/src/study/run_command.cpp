@@ -21,6 +21,11 @@ std::vector<std::string> run_words(const RunProgram& with, const std::string& sc
   return words;
 }
 
+bool is_of_study(const std::vector<std::string>& words) {
+  return words.size() >= 8 && words[1] == "run" && words[3] == "--out" && words[6] == "--quiet" &&
+         words[7] == "--no-report";
+}
+
 std::vector<std::string> task_words(const RunProgram& with, const std::filesystem::path& study,
                                     const std::filesystem::path& out) {
   std::vector<std::string> words{with.program.string(), "study", study.string(), "--out", out.string()};

@@ -19,6 +19,9 @@ std::vector<std::string> run_words(const RunProgram& with, const std::string& sc
                                    const std::filesystem::path& folder, const std::vector<std::string>& sets,
                                    bool resume);
 
+/// Whether a command line is one of run_words().
+bool is_of_study(const std::vector<std::string>& words);
+
 /// `grit study --only`, to which the name of a run is added. It looks at what the folder of the run holds when it is
 /// started, and so may be started again at any time: by a scheduler, or by hand.
 std::vector<std::string> task_words(const RunProgram& with, const std::filesystem::path& study,
