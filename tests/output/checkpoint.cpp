@@ -140,6 +140,20 @@ TEST_F(CheckpointFile, ThatIsDamagedIsRefused) {
   EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5"));
 }
 
+TEST(Guards, CanChangeOnTheWayUnlessTheySetTheTimeStep) {
+  const auto can = [](const char* text, const char* guard, double limit) {
+    return can_go_on_with(Description::parse(text), guard, limit);
+  };
+  EXPECT_TRUE(can(R"({"guards": {"travel": 0.05, "energy": 0.05}})", "energy", 2));
+  EXPECT_FALSE(can(R"({"guards": {"travel": 0.05}})", "travel", 0.06));
+  EXPECT_TRUE(can(R"({"guards": {"travel": 0.04}})", "travel", 0.05));
+  EXPECT_FALSE(can(R"({"guards": {"travel": 0.1}})", "travel", 0.05));
+  EXPECT_TRUE(can(R"({"guards": {"travel": 0.1}, "time_step": {"max_displacement": 0.04}})", "travel", 1));
+  EXPECT_FALSE(can(R"({"guards": {"energy": 0.1}, "stages": [{"change": {"guards": {"energy": 0.1}}}]})", "energy", 1));
+  EXPECT_FALSE(
+      can(R"({"guards": {"energy": 0.1}, "stages": [{"ramps": [{"pointer": "/guards/energy"}]}]})", "energy", 1));
+}
+
 TEST_F(CheckpointFile, OfBeforeIsTakenIfTheLastIsDamagedOrMissing) {
   const auto previous = previous_checkpoint_path(folder_.path());
   EXPECT_EQ(checkpoint_path(folder_.path()), path_);

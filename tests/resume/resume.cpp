@@ -299,7 +299,8 @@ TEST_F(Resume, KeepsTheCheckpointIfAGuardTrips) {
   EXPECT_EQ(again.status, 4);
   EXPECT_THAT(again.err,
               AllOf(HasSubstr("/guards/travel"),
-                    HasSubstr("the last checkpoint is kept: change /guards/travel and continue with --resume")));
+                    HasSubstr("the last checkpoint is kept: change /guards/travel, to at most 0.05, and continue with "
+                              "--resume")));
 }
 
 TEST_F(Resume, ContinuesWithOtherGuards) {
@@ -323,6 +324,30 @@ TEST_F(Resume, ContinuesWithOtherGuards) {
   const auto done = whole("stopped", "{\"travel\": 0.04}", true);
   EXPECT_EQ(done.status, 2);
   EXPECT_THAT(done.err, HasSubstr("/guards/travel: found 0.04, allowed 0.05"));
+}
+
+TEST_F(Resume, GoesOnWithTheGuardThatItsAdviceNames) {
+  const auto stopped = [&](const char* name, std::vector<std::string> sets) {
+    sets.insert(sets.begin(), {"/output/checkpoint_every=1e-6", "/stages/0/until/value=40000",
+                               "/stages/1/until/value=2000", "/guards/travel=1e-3"});
+    std::vector<std::string> more;
+    for (const auto& set : sets) more.insert(more.end(), {"--set", set});
+    const auto outcome = grit(run(name, more));
+    EXPECT_EQ(outcome.status, 4) << name << outcome.err;
+    return outcome.err;
+  };
+  const auto on = [&](const char* name, const char* set) { return grit({"run", "--resume", name, "--set", set}); };
+  EXPECT_THAT(stopped("usual", {}), HasSubstr("change /guards/travel, to at most 0.05, and continue with --resume"));
+  const auto above = on("usual", "/guards/travel=0.1");
+  EXPECT_EQ(above.status, 2);
+  EXPECT_THAT(above.err, AllOf(HasSubstr("/guards/travel: found 0.1, allowed 0.001"),
+                               HasSubstr("above 0.05, /guards/travel also sets the time step")));
+  EXPECT_EQ(on("usual", "/guards/travel=0.05").status, 0);
+  EXPECT_THAT(stopped("limited", {"/time_step/max_displacement=0.04"}),
+              HasSubstr("change /guards/travel and continue with --resume"));
+  EXPECT_EQ(on("limited", "/guards/travel=0.1").status, 0);
+  EXPECT_THAT(stopped("staged", {R"(/stages/0/change={"guards": {"travel": 1e-3}})"}),
+              HasSubstr("--resume cannot go on with another /guards/travel, as it is set by a stage"));
 }
 
 }  // namespace

@@ -93,12 +93,19 @@ bool is_done(const Description& run_json, const std::filesystem::path& folder, c
   return done;
 }
 
-/// Advice after a guard that only decides where a run ends: it can be changed before resuming.
-std::string resume_advice(Guard guard, const std::filesystem::path& folder) {
+/// Advice after a guard that may only decide where a run ends: then it can be changed before resuming.
+std::string resume_advice(Guard guard, const Description& description, const std::filesystem::path& folder) {
   if (guard != Guard::travel && guard != Guard::energy) return "";
   if (!has_checkpoint(folder)) return "";
-  return std::string("\n  the last checkpoint is kept: change /guards/") +
-         (guard == Guard::travel ? "travel" : "energy") + " and continue with --resume";
+  const std::string name = guard == Guard::travel ? "travel" : "energy";
+  const double usual = GuardsDescription().travel, any = 1e300, now = description.at("guards").at(name);
+  const bool freely = can_go_on_with(description, name, any);
+  if (!freely && !(guard == Guard::travel && now < usual && can_go_on_with(description, name, usual)))
+    return "\n  --resume cannot go on with another /guards/" + name +
+           ", as it is set by a stage or sets the time step: run all stages from the start with it in another folder "
+           "(--out DIR)";
+  return "\n  the last checkpoint is kept: change /guards/" + name +
+         (freely ? "" : ", to at most " + number(usual) + ',') + " and continue with --resume";
 }
 
 /// How a run goes on that has failed for want of space or memory.
@@ -249,7 +256,8 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
               << shell_word(folder.string()) << "'" << std::endl;
   if (!options.has("no-report")) make_report(folder);
   if (summary.status == "interrupted") return ExitStatus::interrupted;
-  if (summary.status == "failed") throw NumericsError(summary.message + resume_advice(summary.guard, folder));
+  if (summary.status == "failed")
+    throw NumericsError(summary.message + resume_advice(summary.guard, resolved(description), folder));
   return ExitStatus::done;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "description/description.hpp"
 #include "grit/error.hpp"
 #include "input/document.hpp"
 #include "storage/state_file.hpp"
@@ -142,27 +143,49 @@ std::string differences(const Description& now, const Description& then) {
 
 namespace {
 
+Description travel_of(const Description& description) {
+  const Description::json_pointer pointer("/guards/travel");
+  return description.contains(pointer) ? description.at(pointer) : Description();
+}
+
 /// Whether the travel guard sets the time step: above its default, without a maximum displacement.
 bool sets_time_step(const Description& description) {
-  constexpr double usual = 0.05;
-  const auto travel = description["guards"].find("travel");
-  const auto time_step = description.find("time_step");
-  const bool has_own =
-      time_step != description.end() && time_step->is_object() && time_step->contains("max_displacement");
-  return travel != description["guards"].end() && travel->is_number() && travel->get<double>() > usual && !has_own;
+  const Description travel = travel_of(description);
+  return travel.is_number() && travel.get<double>() > GuardsDescription().travel &&
+         !description.contains(Description::json_pointer("/time_step/max_displacement"));
 }
 
 }  // namespace
 
 std::string differences_on_the_way(const Description& now, const Description& then) {
-  const auto without = [](Description description) {
+  const bool both_only_stop = !sets_time_step(now) && !sets_time_step(then);
+  const auto without = [&](Description description) {
     const auto guards = description.find("guards");
     if (guards == description.end() || !guards->is_object()) return description;
     guards->erase("energy");
-    if (!sets_time_step(description)) guards->erase("travel");
+    if (both_only_stop) guards->erase("travel");
     return description;
   };
-  return differences(without(now), without(then));
+  const std::string other = differences(without(now), without(then));
+  if (both_only_stop || travel_of(now) == travel_of(then)) return other;
+  return other + fmt::format(
+                     "\n  above {}, /guards/travel also sets the time step, unless there is a "
+                     "/time_step/max_displacement",
+                     GuardsDescription().travel);
+}
+
+bool can_go_on_with(const Description& description, const std::string& guard, double limit) {
+  const Description::json_pointer pointer("/guards/" + guard);
+  const auto sets_it = [&](const Description& stage) {
+    const auto ramps = stage.value("ramps", Description::array());
+    return stage.value("change", Description::object()).contains(pointer) ||
+           std::ranges::any_of(ramps,
+                               [&](const auto& ramp) { return ramp.value("pointer", "") == pointer.to_string(); });
+  };
+  if (std::ranges::any_of(description.value("stages", Description::array()), sets_it)) return false;
+  Description other = description;
+  other[pointer] = limit;
+  return differences_on_the_way(other, description).empty();
 }
 
 std::string advice_on_stages(const Description& now, const Description& then) {
