@@ -13,6 +13,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 const std::vector<std::string> all_commands{"run", "check", "expand", "schema", "plugins", "describe"};
@@ -100,6 +101,10 @@ TEST(Usage, WrongWordsAreNamed) {
             "unrecognised option '--treads'; did you mean \"--threads\"? See 'grit run --help'"},
            {{"run", "two.json", "--thr", "2"}, "unrecognised option '--thr'"},
            {{"run", "two.json", "--out"}, "the required argument for option '--out' is missing"},
+           {{"run", "two.json", "--out", ""}, "--out takes a value, not \"\"; see 'grit run --help'"},
+           {{"report", "results/two", "--out="}, "--out takes a value, not \"\"; see 'grit report --help'"},
+           {{"study", "study.json", "--out", ""}, "--out takes a value, not \"\"; see 'grit study --help'"},
+           {{"run", ""}, "found an empty name, \"\"; give a file or folder; see 'grit run --help'"},
            {{"run", "two.json", "--threads", "0"}, "--threads takes a number from 1 to 1024, not \"0\""},
            {{"run", "two.json", "--threads=-1"}, "--threads takes a number from 1 to 1024, not \"-1\""},
            {{"run", "two.json", "--threads", "many"}, "--threads takes a number from 1 to 1024, not \"many\""},
@@ -117,6 +122,42 @@ TEST(Usage, WrongWordsAreNamed) {
     EXPECT_THAT(outcome.err, AllOf(StartsWith("grit: "), HasSubstr(said)));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+TEST(Usage, PathsThatTheSystemRefusesAreReportedInWords) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  folder.write("study.json", R"({"scene": "two.json", "metrics": {"energy": {"type": "last",
+    "of": "packing/kinetic_energy"}}, "settings": {"safety": {"pointers": ["/time_step/safety"], "values": [0.8, 0.4]}}, "seeds": {"values": [1]}})");
+  const std::string name(300, 'a');
+  std::string deep = "d";
+  for (int i = 0; i < 500; ++i) deep += "/0123456789";
+  for (const auto& words : std::vector<std::vector<std::string>>{{"run", "two.json", "--out", name},
+                                                                 {"run", "two.json", "--out", deep},
+                                                                 {"run", "two.json", "--out", deep, "--overwrite"},
+                                                                 {"run", name},
+                                                                 {"run", "--resume", name},
+                                                                 {"study", "study.json", "--out", name},
+                                                                 {"study", "study.json", "--out", "two.json"},
+                                                                 {"study", "study.json", "--out", "two.json/study"},
+                                                                 {"study", "study.json", "--out", name, "--collect"}}) {
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 5) << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("filesystem error"))) << words.front();
+    EXPECT_THAT(outcome.err, Not(HasSubstr("did not write"))) << words.front();
+  }
+}
+
+TEST(Usage, AWorkingFolderThatIsGoneIsNamed) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const std::string scene = (folder / "two.json").string();
+  const auto outcome =
+      shell(folder.path(), "mkdir gone; cd gone; rmdir ../gone; \"" GRIT_BINARY "\" run --quiet " + scene);
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("No such file or directory"),
+                                 HasSubstr("the working folder was removed: change to one that exists"),
+                                 Not(HasSubstr("filesystem error"))));
 }
 
 TEST(Usage, MoreThreadsThanThoseOfTheMachineAreReported) {

@@ -10,6 +10,7 @@
 #include "app/command.hpp"
 #include "app/early_exit.hpp"
 #include "app/interrupt.hpp"
+#include "format/message.hpp"
 #include "format/resources.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
@@ -124,7 +125,7 @@ ExitStatus report(const std::function<ExitStatus()>& work) {
   } catch (const Error& error) {
     return say(error.what(), ExitStatus::description);
   } catch (const std::filesystem::filesystem_error& error) {
-    return say(error.what(), ExitStatus::files);
+    return say(message_of(error), ExitStatus::files);
   } catch (const std::bad_alloc&) {
     return say(out_of_memory(), ExitStatus::files);
   } catch (const std::exception& error) {

@@ -57,6 +57,12 @@ bool Options::read(const std::vector<std::string>& words) {
     throw UsageError(std::string(error.what()) + "; see 'grit " + command_.name + " --help'");
   }
   words_ = list("words");
+  for (const auto& [name, value] : values_)
+    if (const auto* const text = boost::any_cast<std::string>(&value.value()); text != nullptr && text->empty())
+      throw UsageError("--" + name + " takes a value, not \"\"; see 'grit " + command_.name + " --help'");
+  if (std::ranges::find(words_, "") != words_.end())
+    throw UsageError(std::string("found an empty name, \"\"; give a file or folder; see 'grit ") + command_.name +
+                     " --help'");
   if (!has("help")) return true;
   std::cout << "grit " << command_.name << ' ' << command_.synopsis << (*command_.synopsis == 0 ? "" : " ")
             << "[options]\n\n"

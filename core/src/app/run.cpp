@@ -14,6 +14,7 @@
 #include "app/wall_shapes.hpp"
 #include "app/watch.hpp"
 #include "format/duration.hpp"
+#include "format/message.hpp"
 #include "format/number.hpp"
 #include "format/resources.hpp"
 #include "grit/error.hpp"
@@ -42,7 +43,7 @@ void make_report(const std::filesystem::path& folder) {
     for (const std::string& problem : page.problems) std::cerr << "grit: report: " << problem << '\n';
     std::cout << "report: " << out.string() << '\n';
   } catch (const std::exception& error) {
-    std::cerr << "grit: no report: " << error.what() << std::endl;
+    std::cerr << "grit: no report: " << message_of(error) << std::endl;
   }
 }
 

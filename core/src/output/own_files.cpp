@@ -70,8 +70,12 @@ bool is_file(const fs::path& path) {
 }
 
 bool is_there(const fs::path& path) {
-  std::error_code none;
-  return fs::symlink_status(path, none).type() != fs::file_type::not_found;
+  std::error_code fault;
+  const auto type = fs::symlink_status(path, fault).type();
+  if (type == fs::file_type::none)  // nothing is known of it
+    throw FileError(path.string() + ": cannot examine it: " + fault.message() +
+                    "; remove the cause, or give another path (--out)");
+  return type != fs::file_type::not_found;
 }
 
 bool is_run_json(const std::optional<Description>& json) {
