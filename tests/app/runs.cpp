@@ -390,6 +390,31 @@ TEST_F(Runs, ContinueAfterADiskWasFull) {
                               "checkpoint: 'grit run --resume small/results'\n")));
 }
 
+TEST_F(Runs, ReplaceNoFileThatAppearsWhileTheyRun) {
+  for (const std::string name : {"frames/000001.h5", "packing.txt"}) {
+    Program program(grit_with({"run", "two.json", "--overwrite", "--set", "/stages/0/until/value=2000000", "--set",
+                               "/stages/0/limit=\"2000 h\"", "--set", "/output/frames/every_steps=2000000", "--set",
+                               "/probes/packing/every_steps=100000"}),
+                    folder.path());
+    ASSERT_TRUE(program.wait_for("1/1 part"));
+    folder.write("results/two/" + name, "mine");
+    const auto outcome = program.finish();
+    EXPECT_EQ(outcome.status, 5) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("results/two/" + name + ": "),
+                                   HasSubstr("move it away, then continue from the last checkpoint: 'grit run --resume "
+                                             "results/two'")));
+    EXPECT_EQ(text_of(folder / ("results/two/" + name)), "mine");
+    if (name.starts_with("frames"))
+      EXPECT_EQ(grit({"run", "--resume", "results/two"}).status, 5) << "it is still there";
+    EXPECT_EQ(text_of(folder / ("results/two/" + name)), "mine");
+    std::filesystem::remove(folder / ("results/two/" + name));
+    const auto resumed = grit({"run", "--resume", "results/two"});
+    EXPECT_EQ(resumed.status, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr("continues from step 2000000"));
+    EXPECT_EQ(run_json("results/two").at("steps"), 2000000);
+  }
+}
+
 TEST_F(Runs, ReportThatTheirSeriesWereRemoved) {
   Program program(
       grit_with({"run", "two.json", "--set", "/stages/0/until/value=1000000000", "--set", "/stages/0/limit=\"2000 h\"",

@@ -358,6 +358,32 @@ TEST(Frames, ContinueFromACount) {
   EXPECT_TRUE(std::filesystem::exists(folder / "frames/000003.h5"));
 }
 
+TEST(Frames, ReplaceNoFileThatTheyDidNotWrite) {
+  const Folder folder;
+  auto world = three_grains();
+  const auto mine = [&](const std::string& name) {
+    EXPECT_EQ(text_of(folder / ("frames/" + name)), "mine");
+    std::filesystem::remove(folder / ("frames/" + name));
+  };
+  const std::vector<std::string> formats{"vtk", "lammps-dump"};
+  Frames frames(folder.path(), {}, 0, formats);
+  frames.write(world, {});
+  for (const std::string name : {"000001.h5", "000001_grains.vtp", "000001_walls.vtp", "000001.dump"}) {
+    EXPECT_NO_THROW(frames.expect_room());
+    folder.write("frames/" + name, "mine");
+    EXPECT_THAT(error_of<RefusedRecord>([&] { frames.expect_room(); }),
+                testing::AllOf(testing::HasSubstr(name + ": grit did not write"), testing::HasSubstr("move it away")));
+    EXPECT_THROW(frames.write(world, {}), FileError);
+    EXPECT_EQ(frames.count(), 1u);
+    // A run that resumes removes its later frames, but not others.
+    EXPECT_THAT(error_of<FileError>([&] { Frames again(folder.path(), {}, 1, formats); }), testing::HasSubstr(name));
+    mine(name);
+    Frames again(folder.path(), {}, 1, formats);
+  }
+  frames.write(world, {});
+  EXPECT_EQ(frames.count(), 2u);
+}
+
 /// What a reader shows of a frame.
 std::string shown(const std::filesystem::path& path) {
   const Frame frame = read_frame(path);

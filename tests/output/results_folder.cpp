@@ -61,8 +61,8 @@ TEST(ResultsFolder, HoldsAWholeRun) {
   const Folder folder;
   auto world = world_of_two();
   ResultsFolder results(options(folder / "run"));
-  EXPECT_EQ(json::parse(text_of(folder / "run/description.json")).at("seed"), 4);
   results.begin(world, probes);
+  EXPECT_EQ(json::parse(text_of(folder / "run/description.json")).at("seed"), 4);
   auto run = json::parse(text_of(folder / "run/run.json"));
   EXPECT_EQ(run.at("status"), "running");
   EXPECT_EQ(run.at("description").at("title"), "direct shear");
@@ -373,6 +373,26 @@ TEST(ResultsFolder, KeepsItsLastTwoCheckpointsUntilItIsDone) {
   results.finish(world, summary);
   EXPECT_FALSE(has_checkpoint(folder / "run"));
   EXPECT_EQ(step_of("run/final.h5"), 40u);
+}
+
+TEST(ResultsFolder, ReplacesNoFileThatAppearedDuringTheRun) {
+  const Folder folder;
+  auto world = world_of_two();
+  ResultsFolder results(options(folder / "run"));
+  results.begin(world, probes);
+  EXPECT_NO_THROW(results.expect_room());
+  for (const std::string name : {"packing.txt", "picture.svg", "final.h5", "frames/000000.h5"}) {
+    folder.write("run/" + name, "mine");
+    EXPECT_THAT(error_of<RefusedRecord>([&] { results.expect_room(); }),
+                AllOf(HasSubstr("run/" + name + ": "), HasSubstr("move it away")));
+    if (name == "packing.txt") {
+      RunSummary done;
+      done.status = "done";
+      EXPECT_THROW(results.finish(world, done), RefusedRecord);
+    }
+    EXPECT_EQ(text_of(folder / ("run/" + name)), "mine");
+    std::filesystem::remove(folder / ("run/" + name));
+  }
 }
 
 TEST(ResultsFolder, ReportsWhyItCannotBeCreated) {

@@ -18,6 +18,7 @@ class CurveSummary final : public Recorder {
 
   /// Throws DescriptionError if the output names channels or fields that no probe has.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
+  void expect_room() const override { next_.expect_room(); }
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override { next_.frame(world, fields); }
   void stage_ended(const World& world, const std::string& what) override;

@@ -120,6 +120,8 @@ std::string way_on(const RunJob& job) {
 /// message says how to go on.
 RunSummary run_or_advise(Simulation& simulation, const RunJob& job) try {
   return run_recorded(simulation);
+} catch (const RefusedRecord& error) {
+  throw FileError(error.what() + std::string(", then ") + way_on(job));
 } catch (const FileError& error) {
   throw FileError(error.what() + std::string("\n  free space on the disk, or remove the cause, then ") + way_on(job));
 } catch (const std::bad_alloc&) {

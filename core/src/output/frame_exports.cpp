@@ -6,9 +6,10 @@
 namespace grit {
 
 std::span<const FrameExport> frame_exports() {
-  static constexpr FrameExport all[] = {{"vtk", "_grains.vtp", "grains.pvd", vtk_grains},
-                                        {"vtk", "_walls.vtp", "walls.pvd", vtk_walls},
-                                        {"lammps-dump", ".dump", nullptr, lammps_dump}};
+  static constexpr auto vtk = "<?xml version=\"1.0\"?>\n<VTKFile";
+  static constexpr FrameExport all[] = {{"vtk", "_grains.vtp", vtk, "grains.pvd", vtk_grains},
+                                        {"vtk", "_walls.vtp", vtk, "walls.pvd", vtk_walls},
+                                        {"lammps-dump", ".dump", "ITEM: TIMESTEP", nullptr, lammps_dump}};
   return all;
 }
 

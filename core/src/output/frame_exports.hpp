@@ -12,6 +12,7 @@ namespace grit {
 struct FrameExport {
   const char* format;  ///< in /output/frames/formats
   const char* suffix;
+  const char* beginning;   ///< of the text
   const char* collection;  ///< name of the vtk_collection() of all of them in the folder of results; null: none
   std::string (*text)(const World& world, std::span<const WallShape> shapes);
 };

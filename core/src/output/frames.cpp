@@ -10,6 +10,7 @@
 #include "grit/error.hpp"
 #include "output/body_columns.hpp"
 #include "output/frame_exports.hpp"
+#include "output/own_files.hpp"
 #include "output/svg.hpp"
 #include "output/vtk.hpp"
 #include "storage/atomic_file.hpp"
@@ -18,6 +19,9 @@
 
 namespace grit {
 namespace {
+
+constexpr const char* foreign_frame =
+    ": grit did not write this file, which is in the way of a frame: it would be lost; move it away";
 
 template <class T>
 hdf5::Dataset put(hdf5::Group& group, const Channel& what, const hdf5::Shape& shape, const std::vector<T>& values) {
@@ -212,7 +216,10 @@ Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> wall
   if (error) throw FileError(folder.string() + ": cannot make the folder: " + error.message());
 
   for (std::size_t number = 0; number < kept; ++number) instants_.push_back(kept_instant(folder / frame_name(number)));
-  remove_later();
+  const auto old = later();
+  for (const auto& path : old)
+    if (!is_own_frame(path)) throw FileError(path.string() + foreign_frame);
+  for (const auto& path : old) std::filesystem::remove(path, error);
   write_indices();
   const auto is_written = [&](const FrameExport& one) { return std::ranges::find(exports_, &one) != exports_.end(); };
   for (const FrameExport& one : frame_exports())
@@ -220,8 +227,8 @@ Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> wall
       write_collection(one);
 }
 
-/// Those of a format that the description had before are removed too.
-void Frames::remove_later() const {
+/// Also those of a format that the description had before.
+std::vector<std::filesystem::path> Frames::later() const {
   const auto is_later = [&](const std::string& name, const char* suffix) {
     const std::string part = temporary_path(suffix).string();
     for (const char* end : {suffix, part.c_str()})
@@ -235,7 +242,16 @@ void Frames::remove_later() const {
     const auto is_of = [&](const FrameExport& one) { return is_later(name, one.suffix); };
     if (is_later(name, ".h5") || std::ranges::any_of(frame_exports(), is_of)) later.push_back(entry.path());
   }
-  for (const auto& path : later) std::filesystem::remove(path, error);
+  return later;
+}
+
+void Frames::expect_room() const {
+  const auto expect_none = [&](const char* suffix) {
+    const auto path = results_ / "frames" / frame_name(instants_.size(), suffix);
+    if (file_stamp(path)) throw RefusedRecord(path.string() + foreign_frame);
+  };
+  expect_none(".h5");
+  for (const FrameExport* one : exports_) expect_none(one->suffix);
 }
 
 Frames::Instant Frames::instant_of(const hdf5::File& file) {
@@ -307,9 +323,9 @@ void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   Instant instant = instant_of(file);
   write_corners(file, instant.walls);
   file.close();
-  publish(path);
+  publish_new(path);
   for (const FrameExport* one : exports_)
-    write_atomically(results_ / "frames" / frame_name(instants_.size(), one->suffix), one->text(world, walls_));
+    write_new(results_ / "frames" / frame_name(instants_.size(), one->suffix), one->text(world, walls_));
   instants_.push_back(std::move(instant));
   // In all, at most eleven times the final indices and a thousandth of the time are written.
   if (10 * (instants_.size() - indexed_) > indexed_ ||

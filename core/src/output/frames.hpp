@@ -24,11 +24,14 @@ struct FrameExport;
 class Frames {
  public:
   /// Keeps the first `kept` frames and removes later ones, in all formats. Frames that were removed are left out of the
-  /// index; a damaged one is an error, before anything is changed. `formats`: those of FrameExport, in which frames are
+  /// index; a damaged one is an error, and so is a later
+  /// one that no run wrote, before anything is changed. `formats`: those of FrameExport, in which frames are
   /// written.
   Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept = 0,
          std::span<const std::string> formats = {});
 
+  /// Throws RefusedRecord if the next frame would replace a file.
+  void expect_room() const;
   void write(const World& world, std::span<const FieldGroup> fields);
   std::size_t count() const { return instants_.size(); }
   /// Adds frames to the indices that they lack.
@@ -51,7 +54,7 @@ class Frames {
   static Instant instant_of(const hdf5::File& file);
   static std::optional<Instant> kept_instant(const std::filesystem::path& path);
 
-  void remove_later() const;
+  std::vector<std::filesystem::path> later() const;
   void write_indices();
   void write_collection(const FrameExport& one) const;
   void write_xdmf() const;

@@ -47,15 +47,6 @@ std::vector<std::string> names_of_a_run() {
   return all;
 }
 
-/// Whether the entry of frames/ has a name that a run gives.
-bool is_frame(const std::string& name) {
-  const auto is_of = [&](const char* suffix) {
-    const std::string part = temporary_path(suffix).string();
-    return frame_number(name, suffix) || frame_number(name, part.c_str());
-  };
-  return is_of(".h5") || std::ranges::any_of(frame_exports(), [&](const auto& one) { return is_of(one.suffix); });
-}
-
 std::vector<fs::path> entries(const fs::path& folder) {
   std::vector<fs::path> all;
   std::error_code none;
@@ -97,6 +88,8 @@ bool is_empty_file(const fs::path& path) {
   std::error_code none;
   return is_file(path) && fs::file_size(path, none) == 0;
 }
+
+constexpr const char* hdf5_beginning = "\x89HDF\r\n\x1a\n";
 
 /// As RunJson begins.
 constexpr const char* run_json_beginning = "{\n  \"status\": \"running\",\n  \"message\": \"\"";
@@ -143,7 +136,7 @@ void refuse_foreign_frames(const fs::path& folder) {
     throw FileError(folder.string() + ": cannot change it: " + std::strerror(errno) +
                     "; allow it, or choose another folder (--out DIR)");
   for (const auto& path : entries(folder))
-    if (!is_file(path) || !is_frame(path.filename().string())) refuse(path, not_own);
+    if (!is_own_frame(path)) refuse(path, not_own);
 }
 
 /// Of a folder that holds a run.
@@ -157,6 +150,18 @@ void refuse_edited_description(const fs::path& folder) {
 }
 
 }  // namespace
+
+bool is_own_frame(const fs::path& path) {
+  if (!is_file(path)) return false;
+  const std::string name = path.filename().string();
+  const auto is_of = [&](const char* suffix, const char* beginning) {
+    const std::string part = temporary_path(suffix).string();
+    return frame_number(name, part.c_str()) ||
+           (frame_number(name, suffix) && (is_empty_file(path) || has_mark(path, beginning)));
+  };
+  return is_of(".h5", hdf5_beginning) ||
+         std::ranges::any_of(frame_exports(), [&](const FrameExport& one) { return is_of(one.suffix, one.beginning); });
+}
 
 bool holds_a_run(const fs::path& folder) {
   if (is_file(folder / "run.json") && is_run_json(read_run_json(folder))) return true;
@@ -209,7 +214,7 @@ void remove_results(const fs::path& folder) {
     old.push_back(temporary_path(folder / name));
   }
   for (const auto& path : entries(folder / "frames"))
-    if (is_frame(path.filename().string())) old.push_back(path);
+    if (is_own_frame(path)) old.push_back(path);
   for (const auto& path : entries(folder)) {
     const std::string name = path.stem().string();
     const bool is_picture =

@@ -30,6 +30,9 @@ std::set<std::filesystem::path> paths_in(const Description& description);
 /// called after refuse_foreign_files(). Throws FileError.
 void remove_results(const std::filesystem::path& folder);
 
+/// Whether an entry of frames/ is a file of a run, by its name and how it begins.
+bool is_own_frame(const std::filesystem::path& path);
+
 /// Throws FileError if a page or picture exists that grit did not write. A PNG file is its own if the SVG file is.
 void refuse_foreign_page(const std::filesystem::path& path);
 

@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include "bodies/packing_file.hpp"
@@ -54,6 +55,9 @@ std::vector<std::filesystem::path> made(const std::filesystem::path& folder) {
   if (error) throw FileError(folder.string() + ": cannot create the results folder: " + error.message());
   return all;
 }
+
+// Written once, at the end of a run.
+constexpr std::array last_files{"packing.txt", "picture.svg", "final.h5"};
 
 /// Checks that the folder may be used. Nothing is changed.
 std::filesystem::path checked(const ResultsOptions& options, const FolderLock& lock) {
@@ -142,6 +146,7 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
     frames_.emplace(options_.folder, options_.walls, 0, options_.formats);
   }
   run_json_.begin(world, resumes);
+  for (const char* file : last_files) note(file);
   begun_ = true;
   if (!resumes) return;
   write_description();
@@ -165,6 +170,24 @@ void ResultsFolder::restore(std::span<const ProbeGroup> probes) {
   publish(path);
   journal_->cut();
   series_.emplace(path, probes, resumed_.samples, options_.flushing);
+}
+
+void ResultsFolder::note(const char* file) { last_files_[file] = file_stamp(options_.folder / file); }
+
+bool ResultsFolder::has_other(const char* file) const {
+  const auto found = file_stamp(options_.folder / file);
+  return found && found != last_files_.at(file);
+}
+
+void ResultsFolder::expect_no_other(const char* file) const {
+  if (has_other(file))
+    throw RefusedRecord((options_.folder / file).string() +
+                        ": appeared or was changed during the run, and would be lost; move it away");
+}
+
+void ResultsFolder::expect_room() const {
+  frames_->expect_room();
+  for (const char* file : last_files) expect_no_other(file);
 }
 
 void ResultsFolder::sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) {
@@ -230,15 +253,20 @@ void ResultsFolder::checkpoint(const Checkpoint& checkpoint) {
 }
 
 void ResultsFolder::final_state(const Checkpoint& state) {
+  expect_no_other("final.h5");
   write_checkpoint(options_.folder / "final.h5", options_.facts, state);
+  note("final.h5");
 }
 
 void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   series_->close();
   frames_->update_indices();
-  if (summary.status != "failed")
+  if (summary.status != "failed") {
+    for (const char* file : {"packing.txt", "picture.svg"}) expect_no_other(file);
     write_grains(options_.folder / "packing.txt", world, comment_on(world, options_.title));
-  if (options_.picture && !kept_.empty()) draw_picture(world, summary);
+  }
+  if (options_.picture && !kept_.empty() && !has_other("picture.svg")) draw_picture(world, summary);
+  for (const char* file : {"packing.txt", "picture.svg"}) note(file);
   run_json_.finish(world, summary);
   if (summary.status == "done") {
     frames_->sync();

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "output/series_journal.hpp"
 #include "output/single_channels.hpp"
 #include "run/recorder.hpp"
+#include "storage/atomic_file.hpp"
 
 namespace grit {
 
@@ -74,6 +76,7 @@ class ResultsFolder final : public Recorder {
   /// The results of another run are removed only here, when all that can be refused has been. Throws Error for a
   /// channel of the picture that no probe has, or that is not a single value.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
+  void expect_room() const override;
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override;
   void stage_ended(const World& world, const std::string& what) override;
@@ -104,6 +107,11 @@ class ResultsFolder final : public Recorder {
 
   void draw_picture(const World& world, const RunSummary& summary) const;
 
+  void note(const char* last_file);
+  /// Whether a file that is written at the end has appeared or changed since it was noted.
+  bool has_other(const char* file) const;
+  /// Throws RefusedRecord if so.
+  void expect_no_other(const char* file) const;
   /// Makes the folder that of this run: what another one left is removed.
   void take_over();
   void write_description() const;
@@ -124,7 +132,8 @@ class ResultsFolder final : public Recorder {
   BodyValues color_values_;
   std::uint64_t color_step_ = 0;
   Extent resumed_;
-  bool announced_ = false;  ///< run.json is of this run
+  std::map<std::string, std::optional<FileStamp>> last_files_;  ///< of those written at the end
+  bool announced_ = false;                                      ///< run.json is of this run
   bool begun_ = false;
 };
 

@@ -55,11 +55,20 @@ struct RunSummary {
   Model model;
 };
 
+/// What was to be recorded is refused before anything of it was: the simulation can be saved, and go on from there.
+class RefusedRecord : public FileError {
+ public:
+  using FileError::FileError;
+};
+
 class Recorder {
  public:
   virtual ~Recorder() = default;
   /// Once, before the first sample; in a resumed run after serialize() has restored the position.
   virtual void begin(const World& world, std::span<const ProbeGroup> probes) = 0;
+  /// Before the samples of an instant with a frame, or at the end of a stage: throws RefusedRecord if a file is in the
+  /// way of the next frame or of the last results.
+  virtual void expect_room() const {}
   /// One sample of the probe with this index in begin()'s list.
   virtual void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) = 0;
   virtual void frame(const World& world, std::span<const FieldGroup> fields) = 0;

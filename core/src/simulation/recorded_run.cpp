@@ -13,6 +13,9 @@ RunSummary run_recorded(Simulation& simulation) {
     summary.status = simulation.run() ? "done" : "interrupted";
     if (summary.status == "done" && parts.checkpoints.keeps())
       parts.checkpoints.save([&] { return parts.runner.save(); });
+  } catch (const RefusedRecord&) {
+    if (parts.checkpoints.keeps()) parts.checkpoints.save([&] { return parts.runner.save(); });
+    throw;
   } catch (const NumericsError& error) {
     summary.status = "failed", summary.message = error.what(), summary.guard = error.guard();
   } catch (const DescriptionError& error) {

@@ -9,7 +9,8 @@ namespace grit {
 /// Runs all remaining stages, and finishes the recorder of the simulation. Returns how the run ended: "done",
 /// "interrupted" or "failed" (a guard, a stage that did not end, an expectation that was not met; the message says
 /// which). In all three cases everything is recorded, including the last instant. Other errors are thrown; faults of
-/// the description found after the start are first recorded as failed.
+/// the description found after the start are first recorded as failed, and a simulation whose record was refused is
+/// saved.
 RunSummary run_recorded(Simulation& simulation);
 
 }  // namespace grit

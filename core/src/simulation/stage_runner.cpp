@@ -128,6 +128,7 @@ StageRunner::Event StageRunner::next(bool stop) {
   }
   find_forces();
   const bool met = instant_.may_end && is_met(stage.until, kernel_, start_);
+  if (met || frames_.is_due()) recorder_.expect_room();
   observe(met);
   if (met) {
     end_stage(stage);

@@ -32,6 +32,25 @@ void publish(const std::filesystem::path& path) {
   if (error) throw FileError(path.string() + ": cannot replace the file: " + error.message());
 }
 
+void publish_new(const std::filesystem::path& path) {
+  const auto temporary = temporary_path(path);
+  if (::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) return;
+  const bool unknown = errno == EINVAL || errno == ENOSYS;  // to this file system
+  const int error = errno;
+  if (unknown && !std::filesystem::exists(path)) return publish(path);
+  std::error_code ignored;
+  std::filesystem::remove(temporary, ignored);
+  throw FileError(path.string() + ": cannot create it: " + std::strerror(unknown ? EEXIST : error) +
+                  "; grit does not replace a file that it did not write: move it away");
+}
+
+std::optional<FileStamp> file_stamp(const std::filesystem::path& path) {
+  struct stat file {};
+  if (::lstat(path.c_str(), &file) != 0) return std::nullopt;
+  return FileStamp{file.st_dev, file.st_ino, static_cast<std::uint64_t>(file.st_size), file.st_mtim.tv_sec,
+                   file.st_mtim.tv_nsec};
+}
+
 void sync_to_disk(const std::filesystem::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const bool done = file >= 0 && ::fsync(file) == 0;
@@ -63,7 +82,9 @@ void sync_folder(const std::filesystem::path& folder) {
   if (!done) fail(folder, error);
 }
 
-void write_atomically(const std::filesystem::path& path, std::string_view text) {
+namespace {
+
+void write_temporary(const std::filesystem::path& path, std::string_view text) {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary_path(path).c_str(), "wb"), std::fclose);
   if (!file) fail(path, errno);
   // Removes the incomplete file that a full disk leaves.
@@ -74,7 +95,18 @@ void write_atomically(const std::filesystem::path& path, std::string_view text) 
   };
   if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) give_up(errno);
   if (std::fclose(file.release()) != 0) give_up(errno);
+}
+
+}  // namespace
+
+void write_atomically(const std::filesystem::path& path, std::string_view text) {
+  write_temporary(path, text);
   publish(path);
+}
+
+void write_new(const std::filesystem::path& path, std::string_view text) {
+  write_temporary(path, text);
+  publish_new(path);
 }
 
 }  // namespace grit

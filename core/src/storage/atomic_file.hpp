@@ -1,7 +1,9 @@
 // Atomic replacement of files: a reader finds the old file or the complete new one, even if the writer is killed.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 namespace grit {
@@ -11,6 +13,17 @@ std::filesystem::path temporary_path(const std::filesystem::path& path);
 
 /// Renames the temporary file to `path`. Throws FileError.
 void publish(const std::filesystem::path& path);
+
+/// The same, but another file of this name is kept, and an error.
+void publish_new(const std::filesystem::path& path);
+
+/// By which a file is known: it differs if the file was replaced or changed. None without the file.
+struct FileStamp {
+  std::uint64_t device = 0, number = 0, size = 0;
+  std::int64_t seconds = 0, nanoseconds = 0;  ///< of the last change
+  bool operator==(const FileStamp&) const = default;
+};
+std::optional<FileStamp> file_stamp(const std::filesystem::path& path);
 
 /// Returns when a file is on disk and survives a crash of the machine. Throws FileError.
 void sync_to_disk(const std::filesystem::path& path);
@@ -28,5 +41,7 @@ void sync_folder(const std::filesystem::path& folder);
 
 /// Writes a temporary file and renames it. Throws FileError with the system's reason; the old file then stays.
 void write_atomically(const std::filesystem::path& path, std::string_view text);
+/// The same, but another file of this name is kept, and an error.
+void write_new(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace grit
