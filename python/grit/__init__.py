@@ -15,6 +15,7 @@ import difflib
 import fcntl
 import json
 import pathlib
+import stat
 import struct
 import time
 import zlib
@@ -53,22 +54,31 @@ def open(folder):
 _REST, _PATIENCE = 0.02, 5
 
 
+_KINDS = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a named pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket"}
+
+
 def _stamp(path):
+    """Time and length of a regular file. Others are refused before they are opened: reading a pipe may never end."""
     try:
         state = path.stat()
     except FileNotFoundError:
         raise ResultsError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise ResultsError(f"{path}: cannot be read: {error.strerror}") from error
+    if not stat.S_ISREG(state.st_mode):
+        kind = _KINDS.get(stat.S_IFMT(state.st_mode), "something else")
+        raise ResultsError(f"{path}: is {kind}, not a file that grit wrote; restore it, or run the description again")
     return state.st_mtime_ns, state.st_size
 
 
 def _is_being_written(path):
     """Whether a run has marked the file: a lock that readers query but never take."""
-    with path.open("rb") as file:
-        lock = struct.pack("hhqqi0q", fcntl.F_RDLCK, 0, 0, 0, 0)  # struct flock: type, whence, start, length, process
-        try:
+    lock = struct.pack("hhqqi0q", fcntl.F_RDLCK, 0, 0, 0, 0)  # struct flock: type, whence, start, length, process
+    try:
+        with path.open("rb") as file:
             return struct.unpack("hhqqi0q", fcntl.fcntl(file, fcntl.F_OFD_GETLK, lock))[0] != fcntl.F_UNLCK
-        except OSError:  # file system without locks
-            return False
+    except OSError:  # a file system without locks, or a file that cannot be read
+        return False
 
 
 # The last line of a complete series.h5: its length and CRC-32, see storage/seal.hpp.
@@ -315,10 +325,11 @@ class Run:
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
         path = self.folder / "run.json"
+        if not path.exists():
+            raise ResultsError(f"{self.folder}: holds no run (no run.json); give a folder that 'grit run' has written")
+        _stamp(path)
         try:
             self.json = json.loads(path.read_text())
-        except (FileNotFoundError, NotADirectoryError):
-            raise ResultsError(f"{self.folder}: holds no run (no run.json); give a folder that 'grit run' has written") from None
         except ValueError as error:
             raise ResultsError(f"{path}: not JSON: {error}") from error
         self.series = Series(self.folder / "series.h5")

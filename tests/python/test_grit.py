@@ -10,6 +10,7 @@ import os
 import pathlib
 import shutil
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -231,6 +232,30 @@ class Results(unittest.TestCase):
         (target / "run.json").write_text('{"status": ')
         with self.assertRaisesRegex(grit.ResultsError, "run.json: not JSON"):
             grit.open(target)
+
+    def test_what_is_no_regular_file_is_refused_before_it_is_opened(self):
+        def socket_at(path):
+            with socket.socket(socket.AF_UNIX) as listener:
+                listener.bind(os.path.relpath(path))  # the whole path may be too long
+
+        readers = {"run.json": lambda folder: grit.open(folder), "series.h5": lambda folder: list(grit.open(folder).series),
+                   "frames/000001.h5": lambda folder: grit.open(folder).frames[1]}
+        kinds = {"a named pipe": os.mkfifo, "a folder": os.mkdir, "a device": lambda path: os.symlink("/dev/zero", path), "a socket": socket_at}
+        target = self.copy()
+        for name, read in readers.items():
+            path, kept = target / name, target / "kept"
+            path.rename(kept)
+            for kind, make in kinds.items():
+                make(path)
+                with self.assertRaisesRegex(grit.ResultsError, f"{name}: is {kind}, not a file that grit wrote; restore it", msg=name):
+                    read(target)
+                path.rmdir() if kind == "a folder" else path.unlink()
+            os.symlink(path.name, path)
+            with self.assertRaisesRegex(grit.ResultsError, "holds no run" if name == "run.json" else f"{name}: cannot be read: Too many levels"):
+                read(target)
+            path.unlink()
+            kept.rename(path)
+        self.assertEqual(grit.open(target).frames[1].step, self.run_.frames[1].step)
 
     def test_flipped_bytes_are_found(self):
         target = self.copy()
