@@ -31,7 +31,7 @@ class ResultsError(Exception):
     """A folder or a file that `grit run` has not written, or not yet."""
 
 
-class UnknownName(KeyError):
+class UnknownName(ResultsError, KeyError):
     """An unknown name; the message lists the known ones."""
 
     def __init__(self, what, name, names):
@@ -61,8 +61,8 @@ def _stamp(path):
     """Time and length of a regular file. Others are refused before they are opened: reading a pipe may never end."""
     try:
         state = path.stat()
-    except FileNotFoundError:
-        raise ResultsError(f"{path}: there is no such file") from None
+    except FileNotFoundError as error:
+        raise ResultsError(f"{path}: there is no such file") from error
     except OSError as error:
         raise ResultsError(f"{path}: cannot be read: {error.strerror}") from error
     if not stat.S_ISREG(state.st_mode):
@@ -129,13 +129,41 @@ def _attribute(thing, name):
     return value.decode() if isinstance(value, bytes) else value
 
 
-def _member(group, path):
+def _number(thing, name):
+    value = _attribute(thing, name)
+    if isinstance(value, str):
+        _refuse(thing, f"its attribute {name!r} is a text, not a number")
+    return value
+
+
+def _text(thing, name):
+    value = _attribute(thing, name)
+    if not isinstance(value, str):
+        _refuse(thing, f"its attribute {name!r} is a number, not a text")
+    return value
+
+
+def _member(group, name, kind):
     """A group or dataset, but no link to another file."""
+    link = group.get(name, getlink=True)
+    if link is None:
+        _refuse(group, f"lacks {name!r}")
+    if not isinstance(link, h5py.HardLink):
+        _refuse(group, f"{name!r} is a link")
+    if not isinstance(group[name], kind):
+        _refuse(group, f"{name!r} is no {kind.__name__.lower()}")
+    return group[name]
+
+
+def _group(group, path):
+    """A group inside groups, by the names on the way to it."""
     for name in path.split("/"):
-        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-            _refuse(group, f"{name!r} is a link")
-        group = group[name]
+        group = _member(group, name, h5py.Group)
     return group
+
+
+def _dataset(group, name):
+    return _member(group, name, h5py.Dataset)
 
 
 def _numbers(dataset):
@@ -160,14 +188,14 @@ def _read(path, act, check=_check_seal):
             check(path)
             with h5py.File(path, "r") as file:
                 found = act(file)
-        except (OSError, RuntimeError, TypeError, ValueError, KeyError, ResultsError) as error:
+        except (ArithmeticError, LookupError, OSError, RuntimeError, TypeError, ValueError, ResultsError) as error:
             failure = error
         if rested and not _is_being_written(path) and _stamp(path) == before:
             break
         if time.monotonic() > until:
             raise ResultsError(f"{path}: has been written to for {_PATIENCE} s; try again, or check whether its run is suspended")
         time.sleep(_REST)
-    if isinstance(failure, (KeyError, ResultsError)):
+    if isinstance(failure, ResultsError):
         raise failure
     if failure:
         raise ResultsError(f"{path}: cannot be read: {failure}; the file is damaged") from failure
@@ -181,13 +209,13 @@ class Table(Mapping):
         self._path, self._group, self._what = path, group, what
 
     def _use(self, act):
-        return _read(self._path, lambda file: act(_member(file, self._group) if self._group in file else {}), _check_frame)
+        return _read(self._path, lambda file: act(_group(file, self._group) if self._group in file else {}), _check_frame)
 
     def _of(self, name, act):
         def get(group):
-            if name not in group or not isinstance(_member(group, name), h5py.Dataset):
+            if name not in list(group):
                 raise UnknownName(self._what, name, sorted(group))
-            return act(group[name])
+            return act(_dataset(group, name))
         return self._use(get)
 
     def __getitem__(self, name):
@@ -204,19 +232,22 @@ class Table(Mapping):
 
     def units(self, name):
         """Unit in UDUNITS notation, "1" if dimensionless."""
-        return self._of(name, lambda dataset: _attribute(dataset, "units"))
+        return self._of(name, lambda dataset: _text(dataset, "units"))
 
     def about(self, name):
         """Description of the dataset."""
-        return self._of(name, lambda dataset: _attribute(dataset, "long_name"))
+        return self._of(name, lambda dataset: _text(dataset, "long_name"))
 
     def all(self):
         """All datasets, read at one instant: {name: array}. They have equal lengths even while the run continues."""
-        return self._use(lambda group: {name: _numbers(_member(group, name)) for name in sorted(group)})
+        return self._use(lambda group: {name: _numbers(_dataset(group, name)) for name in sorted(group)})
 
     def records(self):
         """All datasets as one structured array, one record per row."""
         columns = self.all()
+        rows = {column.shape[:1] for column in columns.values()}
+        if () in rows or len(rows) > 1:
+            raise ResultsError(f"{self._path}/{self._group}: its {self._what}s have different numbers of rows; read them with all()")
         kinds = [(name, column.dtype, column.shape[1:]) for name, column in columns.items()]
         records = numpy.empty(len(next(iter(columns.values()), ())), dtype=kinds)
         for name, column in columns.items():
@@ -225,7 +256,7 @@ class Table(Mapping):
 
 
 def _channels(file):
-    return [f"{probe}/{channel}" for probe in file for channel in _member(file, probe)]
+    return [f"{probe}/{channel}" for probe in file for channel in _group(file, probe)]
 
 
 class Series(Mapping):
@@ -240,9 +271,9 @@ class Series(Mapping):
     def _of(self, name, act):
         def get(file):
             probe, _, channel = str(name).partition("/")
-            if probe not in file or channel not in _member(file, probe):
+            if probe not in list(file) or channel not in list(_group(file, probe)):
                 raise UnknownName("channel", name, _channels(file))
-            return act(_member(file[probe], channel))
+            return act(_dataset(_group(file, probe), channel))
         return _read(self._path, get)
 
     def __iter__(self):
@@ -255,17 +286,18 @@ class Series(Mapping):
         return f"<series of {self._path}: {', '.join(self)}>"
 
     def units(self, name):
-        return self._of(name, lambda dataset: _attribute(dataset, "units"))
+        return self._of(name, lambda dataset: _text(dataset, "units"))
 
     def about(self, name):
-        return self._of(name, lambda dataset: _attribute(dataset, "long_name"))
+        return self._of(name, lambda dataset: _text(dataset, "long_name"))
 
     def probe(self, name):
         """All channels of a probe, read at one instant: {channel: array}. They have equal lengths even while the run continues."""
         def get(file):
-            if name not in file:
+            if name not in list(file):
                 raise UnknownName("probe", name, list(file))
-            return {channel: _numbers(_member(file[name], channel)) for channel in _member(file, name)}
+            probe = _group(file, name)
+            return {channel: _numbers(_dataset(probe, channel)) for channel in probe}
         return _read(self._path, get)
 
 
@@ -274,9 +306,8 @@ class Wall:
 
     def __init__(self, dataset):
         self.triangles = _numbers(dataset)
-        self.index = int(_attribute(dataset, "index"))
-        self.pressure = float(_attribute(dataset, "pressure"))
-        self.displacement, self.force = (numpy.array([_attribute(dataset, f"{name}_{axis}") for axis in "xyz"]) for name in ("displacement", "force"))
+        self.index, self.pressure = int(_number(dataset, "index")), float(_number(dataset, "pressure"))
+        self.displacement, self.force = (numpy.array([_number(dataset, f"{name}_{axis}") for axis in "xyz"]) for name in ("displacement", "force"))
 
 
 class Frame:
@@ -285,11 +316,10 @@ class Frame:
     def __init__(self, path):
         self.path = path
         def get(file):
-            walls = _member(file, "walls")
-            return ([_attribute(file, name) for name in ("time", "step", "stage")],
-                    {name: Wall(_member(walls, name)) for name in walls}, list(_member(file, "probes")))
-        (self.time, self.step, self.stage), self.walls, probes = _read(path, get, _check_frame)
-        self.time, self.step, self.stage = float(self.time), int(self.step), str(self.stage)
+            walls = _group(file, "walls")
+            return (float(_number(file, "time")), int(_number(file, "step")), _text(file, "stage"),
+                    {name: Wall(_dataset(walls, name)) for name in walls}, list(_group(file, "probes")))
+        self.time, self.step, self.stage, self.walls, probes = _read(path, get, _check_frame)
         self.probes = {name: Table(path, f"probes/{name}", "field") for name in probes}
         self.bodies, self.contacts, self.clumps = (Table(path, group, "array") for group in ("bodies", "contacts", "clumps"))
 
@@ -304,7 +334,12 @@ class Frames(Sequence):
         self._folder = folder
 
     def _files(self):
-        return sorted(self._folder.glob("*.h5"))
+        try:
+            return sorted(path for path in self._folder.iterdir() if path.suffix == ".h5")
+        except FileNotFoundError:  # a run without frames
+            return []
+        except OSError as error:
+            raise ResultsError(f"{self._folder}: cannot be read: {error.strerror}; restore the folder") from error
 
     def __len__(self):
         return len(self._files())
@@ -319,19 +354,31 @@ class Frames(Sequence):
             raise IndexError(f"{self._folder}: there is no frame {index} of {len(files)}") from None
 
 
+def _run_json(folder):
+    """The facts in run.json: an object with a status."""
+    path = folder / "run.json"
+    try:
+        _stamp(path)
+        facts = json.loads(path.read_bytes())
+    except ResultsError as error:
+        if isinstance(error.__cause__, (FileNotFoundError, NotADirectoryError)):
+            raise ResultsError(f"{folder}: holds no run (no run.json); give a folder that 'grit run' has written") from None
+        raise
+    except OSError as error:
+        raise ResultsError(f"{path}: cannot be read: {error.strerror}") from error
+    except (ValueError, RecursionError) as error:
+        raise ResultsError(f"{path}: not JSON: {error}") from error
+    if not isinstance(facts, dict) or not isinstance(facts.get("status"), str):
+        raise ResultsError(f"{path}: is no JSON object with a text 'status'; the file is damaged or not of grit")
+    return facts
+
+
 class Run:
     """The results of a finished or continuing run. Keys of run.json are attributes, such as `status`, `time`, `bodies`, `description`."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
-        path = self.folder / "run.json"
-        if not path.exists():
-            raise ResultsError(f"{self.folder}: holds no run (no run.json); give a folder that 'grit run' has written")
-        _stamp(path)
-        try:
-            self.json = json.loads(path.read_text())
-        except ValueError as error:
-            raise ResultsError(f"{path}: not JSON: {error}") from error
+        self.json = _run_json(self.folder)
         self.series = Series(self.folder / "series.h5")
         self.frames = Frames(self.folder / "frames")
 

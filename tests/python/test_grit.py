@@ -251,11 +251,80 @@ class Results(unittest.TestCase):
                     read(target)
                 path.rmdir() if kind == "a folder" else path.unlink()
             os.symlink(path.name, path)
-            with self.assertRaisesRegex(grit.ResultsError, "holds no run" if name == "run.json" else f"{name}: cannot be read: Too many levels"):
+            with self.assertRaisesRegex(grit.ResultsError, f"{name}: cannot be read: Too many levels"):
                 read(target)
             path.unlink()
             kept.rename(path)
         self.assertEqual(grit.open(target).frames[1].step, self.run_.frames[1].step)
+
+    def test_run_json_that_is_no_facts_of_a_run_is_refused(self):
+        target = self.copy()
+        facts = json.loads((target / "run.json").read_text())
+        del facts["status"]
+        for text in ("[]", "null", "3", '"done"', "{}", '{"status": null}', '{"status": ["done"]}', json.dumps(facts)):
+            (target / "run.json").write_text(text)
+            with self.assertRaisesRegex(grit.ResultsError, "run.json: is no JSON object with a text 'status'; the file is damaged", msg=text):
+                grit.open(target)
+        for content in (b"", b"[" * 100000, b'{"status": "\xff"}', b"\xff\xfe{}", b'{"time": 1' + b"0" * 5000 + b"}"):
+            (target / "run.json").write_bytes(content)
+            with self.assertRaisesRegex(grit.ResultsError, "run.json: not JSON: ", msg=content[:20]):
+                grit.open(target)
+
+    def test_frames_that_are_no_folder_are_refused(self):
+        target = self.copy()
+        run = grit.open(target)
+        (target / "frames").rename(target / "away")
+        self.assertEqual(len(run.frames), 0)
+        (target / "frames").write_text("")
+        for read in (lambda: len(run.frames), lambda: run.frames[0], lambda: list(run.frames)):
+            with self.assertRaisesRegex(grit.ResultsError, "frames: cannot be read: Not a directory; restore the folder"):
+                read()
+
+    def test_frames_without_what_grit_writes_are_refused(self):
+        target = self.copy()
+        path, run = target / "frames/000001.h5", grit.open(target)
+        whole = path.read_bytes()
+
+        def attribute(place, name, value):
+            return lambda file: file[place].attrs.__setitem__(name, value)
+
+        def replaced(place, value):
+            return lambda file: (file.__delitem__(place), file.__setitem__(place, value))
+
+        def grouped(place):
+            return lambda file: (file.__delitem__(place), file.create_group(place))
+
+        def refused(change, words, read=lambda frame: None):
+            path.write_bytes(whole)
+            with h5py.File(path, "r+") as file:
+                change(file)
+            os.utime(path, (0, 0))
+            with self.assertRaisesRegex(grit.ResultsError, f"000001.h5.*: {words}"):
+                read(run.frames[1])
+
+        for name in ("time", "step", "stage"):
+            refused(lambda file: file.attrs.__delitem__(name), f"lacks the attribute '{name}'")
+        refused(attribute("/", "time", numpy.bytes_("soon")), "its attribute 'time' is a text, not a number")
+        refused(attribute("/", "stage", 3), "its attribute 'stage' is a number, not a text")
+        for value in (numpy.nan, numpy.inf):
+            refused(attribute("/", "step", value), "cannot be read: cannot convert float")
+        refused(attribute("/", "stage", numpy.bytes_(b"\xff")), "cannot be read: 'utf-8' codec")
+        refused(lambda file: file.__delitem__("walls"), "lacks 'walls'")
+        refused(lambda file: file.__delitem__("probes"), "lacks 'probes'")
+        refused(replaced("walls", 3.0), "'walls' is no group")
+        refused(grouped("walls/floor"), "'floor' is no dataset")
+        refused(attribute("walls/floor", "index", numpy.inf), "cannot be read: cannot convert float")
+        refused(attribute("walls/floor", "force_x", numpy.bytes_("much")), "its attribute 'force_x' is a text")
+        refused(replaced("bodies", 3.0), "'bodies' is no group", lambda frame: frame.bodies["radius"])
+        for read in (lambda frame: frame.bodies["radius"], lambda frame: frame.bodies.all(), lambda frame: frame.bodies.units("radius")):
+            refused(grouped("bodies/radius"), "'radius' is no dataset", read)
+        for radius in ([1.0], 1.0):
+            refused(replaced("bodies/radius", radius), "its arrays have different numbers of rows", lambda frame: frame.bodies.records())
+        refused(attribute("bodies/radius", "units", 3), "its attribute 'units' is a number", lambda frame: frame.bodies.units("radius"))
+        path.write_bytes(whole)
+        for name in (3, "", ".", "/", "position/", "../bodies/radius"):
+            with self.assertRaisesRegex(grit.ResultsError, "there is no array"):
+                run.frames[1].bodies[name]
 
     def test_flipped_bytes_are_found(self):
         target = self.copy()
@@ -319,6 +388,11 @@ class Results(unittest.TestCase):
         refused(lambda file: replace(file, shape=(3,), dtype="f8", external=[(str(target / "run.json"), 0, 24)]), "does not hold plain numbers")
         refused(lambda file: replace(file, data=numpy.array([(1, 2)], dtype="i4,i4")), "does not hold plain numbers")
         refused(lambda file: replace(file, data="text"), "does not hold plain numbers")
+        refused(lambda file: (file.__delitem__("packing/time"), file.create_group("packing/time")), "'time' is no dataset")
+        refused(lambda file: (file.__delitem__("packing"), file.create_dataset("packing", data=1.0)), "'packing' is no group")
+        for read in (lambda: list(run.series), lambda: len(run.series), lambda: run.series.probe("packing"), lambda: "packing/time" in run.series):
+            with self.assertRaisesRegex(grit.ResultsError, "'packing' is no group"):
+                read()
 
 
 if __name__ == "__main__":
