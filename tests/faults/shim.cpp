@@ -298,6 +298,10 @@ int renameat(int from_folder, const char* from, int to_folder, const char* to) n
   REAL(renameat);
   return call_fails(rename_call, to) ? -1 : real(from_folder, from, to_folder, to);
 }
+int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept {
+  REAL(renameat2);
+  return call_fails(rename_call, to) ? -1 : real(from_folder, from, to_folder, to, flags);
+}
 
 int unlink(const char* path) noexcept {
   REAL(unlink);
