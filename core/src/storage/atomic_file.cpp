@@ -35,13 +35,15 @@ void publish(const std::filesystem::path& path) {
 void publish_new(const std::filesystem::path& path) {
   const auto temporary = temporary_path(path);
   if (::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) return;
-  const bool unknown = errno == EINVAL || errno == ENOSYS;  // to this file system
-  const int error = errno;
-  if (unknown && !std::filesystem::exists(path)) return publish(path);
+  int error = errno;
+  if (error == EINVAL || error == ENOSYS) {  // unknown to this file system
+    if (!file_stamp(path)) return publish(path);
+    error = EEXIST;
+  }
   std::error_code ignored;
   std::filesystem::remove(temporary, ignored);
-  throw FileError(path.string() + ": cannot create it: " + std::strerror(unknown ? EEXIST : error) +
-                  "; grit does not replace a file that it did not write: move it away");
+  throw FileError(path.string() + ": cannot create it: " + std::strerror(error) +
+                  (error == EEXIST ? "; grit does not replace a file that it did not write: move it away" : ""));
 }
 
 std::optional<FileStamp> file_stamp(const std::filesystem::path& path) {
