@@ -105,6 +105,26 @@ TEST(Guards, WallThatPassesThroughBodies) {
   EXPECT_EQ(complaint(d, 3), "") << "away from bodies";
 }
 
+// In one step it is beyond bodies that it was far from before.
+TEST(Guards, WallThatJumpsOverBodies) {
+  Description d = two(1, 0);
+  d["walls"]["lid"] = plane({0, 0, 0.02}, -Vec3::UnitZ());
+  d["walls"]["lid"]["motion"]["velocity"] = {0, 0, -4e4};
+  EXPECT_THAT(complaint(d, 3), HasSubstr("wall \"lid\" moves 40 of a radius towards a body in one step, more than "
+                                         "/guards/travel 0.05; a wall this fast passes through bodies"));
+  d["walls"]["lid"]["motion"]["velocity"] = {0, 0, 4e4};
+  EXPECT_EQ(complaint(d, 3), "") << "away from bodies";
+  d["walls"]["lid"]["motion"]["velocity"] = {4e4, 0, 0};
+  EXPECT_EQ(complaint(d, 3), "") << "along itself";
+
+  Description sheet = two(1, 0);
+  sheet["walls"]["blade"] = {{"type", "rectangle"},   {"corner", {-0.05, -0.05, 0.02}},
+                             {"edge_a", {0.1, 0, 0}}, {"edge_b", {0, 0.1, 0}},
+                             {"two_sided", true},     {"material", "grain"}};
+  sheet["walls"]["blade"]["motion"]["velocity"] = {0, 0, -4e4};
+  EXPECT_THAT(complaint(sheet, 3), HasSubstr("wall \"blade\" moves 40 of a radius towards a body in one step"));
+}
+
 TEST(Guards, WallThatFacesAway) {
   Description d = two(1, 0);
   d["walls"]["floor"] = plane({0, 0, -0.04}, -Vec3::UnitZ());

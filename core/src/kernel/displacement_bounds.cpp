@@ -5,6 +5,7 @@
 
 #include "format/number.hpp"
 #include "kernel/failure.hpp"
+#include "kernel/passed_bodies.hpp"
 
 namespace grit {
 namespace {
@@ -116,6 +117,8 @@ Approach DisplacementBounds::approach_of(const State& state, std::size_t wall, c
   if (state.bodies.count() == 0) return {bound, 0};
   const double smallest = state.statistics.smallest_radius;
   if (dt * bound <= harmless(state) * smallest) return {bound, bound / smallest};
+  if (dt * bound > smallest && passes_bodies(state, wall, motion, dt, dt * bound, passes.team()))
+    return {bound, bound / smallest};
   return approach(state, wall, motion, dt, passes.team());
 }
 
