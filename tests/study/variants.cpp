@@ -63,6 +63,19 @@ TEST(Variants, OfASweepHaveNoFinest) {
                           "rate=2, size=fine", "rate=1, size=fine"));
 }
 
+TEST(Variants, AreRefusedWhereNoMachineRunsThem) {
+  std::string settings, level;
+  for (int value = 1; value <= 100; ++value) level += (value > 1 ? "," : "") + std::to_string(value);
+  for (int k = 0; k < 30; ++k) {
+    const std::string name = "s" + std::to_string(k);
+    settings += (k > 0 ? ",\"" : "\"") + name + R"(": {"pointers": ["/)" + name + R"("], "values": [)" + level + "]}";
+  }
+  EXPECT_THAT(problems_of("{" + settings + "}", R"(, "vary": "crossed")"),
+              HasSubstr("/settings: found 3e+60 runs, of all levels and seeds; allowed is at most 10000; take fewer "
+                        "levels or seeds, vary one at a time, or divide the study"));
+  EXPECT_EQ(problems_of("{" + settings + "}"), "") << "one at a time: 2972 variants";
+}
+
 TEST(Variants, SetTheValuesOfTheStudyTheLevelsAndTheSeed) {
   const auto study = study_of(two_settings, R"(, "set": {"/title": "x"}, "seeds": {"pointer": "/s", "values": [4]})");
   EXPECT_THAT(sets_of(study, variants(study).back(), 4),

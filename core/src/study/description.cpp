@@ -140,6 +140,22 @@ void SeedsDescription::declare(Parameters& p) {
       {"values"});
 }
 
+namespace {
+
+constexpr int most_runs = 10000;
+
+/// The number of runs, or a few more [in floating point, as it may exceed all integers].
+double most_runs_of(const StudyDescription& study) {
+  double crossed = 1, alone = 2;
+  for (const auto& [name, setting] : study.settings) {
+    const auto levels = static_cast<double>(setting.levels());
+    crossed *= levels, alone += levels - 1;
+  }
+  return (study.vary == "crossed" ? crossed : alone) * static_cast<double>(study.seeds.values.size());
+}
+
+}  // namespace
+
 void StudyDescription::declare(Parameters& p) {
   p.add("title", title).doc("one line");
   p.add("scene", scene).file().required().doc("description to run");
@@ -167,6 +183,15 @@ void StudyDescription::declare(Parameters& p) {
       },
       {"set", "settings", "metrics"});
   p.check([this](const Complain& complain) { check_pointers(*this, complain); }, {"settings", "seeds"});
+  p.check(
+      [this](const Complain& complain) {
+        if (const double runs = most_runs_of(*this); runs > most_runs)
+          complain("settings", number(runs) + " runs, of all levels and seeds",
+                   "at most " + std::to_string(most_runs) +
+                       "; take fewer levels or seeds, vary one at a time, or divide the "
+                       "study");
+      },
+      {"settings", "vary", "seeds"});
 }
 
 bool StudyDescription::compares_with_finest() const {
