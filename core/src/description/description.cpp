@@ -751,13 +751,13 @@ void SpecimenDescription::declare(Parameters& p) {
   });
 }
 void TimeStepDescription::declare(Parameters& p) {
-  p.add("safety", safety).above(0).at_most(10).doc("time step over the critical time step");
+  p.add("safety", safety).at_least(1e-6).at_most(10).doc("time step over the critical time step");
   p.add("steps_per_impact", steps_per_impact)
       .at_least(0)
       .at_most(1e6)
       .doc("minimum number of steps in an isolated impact of two bodies; 0: no minimum");
   p.add("max_displacement", max_displacement)
-      .above(0)
+      .at_least(1e-6)
       .doc(
           "the time step is so short that no body moves further than this fraction of its radius in a step, and no "
           "wall "
@@ -765,7 +765,7 @@ void TimeStepDescription::declare(Parameters& p) {
   p.add("value", value)
       .unit("s")
       .symbol("dt")
-      .above(0)
+      .at_least(1e-15)
       .doc(
           "time step; default: safety times the critical time step, or less if steps_per_impact or max_displacement "
           "requires it");
