@@ -466,6 +466,11 @@ TEST(Nearest, IsAQuestion) {
   const std::vector<std::string> names{"sand", "steel"};
   EXPECT_EQ(did_you_mean("snad", names), "; did you mean \"sand\"?");
   EXPECT_EQ(did_you_mean("water", names), "");
+  const std::vector<std::string> laws{"hertz-mindlin", "linear-cohesive", "linear-rolling"};
+  EXPECT_EQ(did_you_mean("hertz", laws), "; did you mean \"hertz-mindlin\"?");
+  EXPECT_EQ(did_you_mean("mindlin", laws), "; did you mean \"hertz-mindlin\"?");
+  EXPECT_EQ(did_you_mean("linear", laws), "") << "two have this word";
+  EXPECT_EQ(did_you_mean("her", laws), "") << "not a word of a name";
   EXPECT_EQ(did_you_mean("snad", names, "allowed are sand, steel"), "; did you mean \"sand\"? Allowed are sand, steel");
   EXPECT_EQ(did_you_mean("water", names, "allowed are sand, steel"), "; allowed are sand, steel");
   EXPECT_EQ(fault_text("\"snad\"" + did_you_mean("snad", names), "sand"),

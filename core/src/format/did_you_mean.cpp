@@ -32,6 +32,14 @@ std::size_t shared_path(std::string_view a, std::string_view b) {
   return slash == std::string_view::npos ? 0 : slash + 1;
 }
 
+/// Whether a name of several words begins or ends with `words`.
+bool has_words(std::string_view name, std::string_view words) {
+  if (words.empty() || words.size() >= name.size()) return false;
+  const auto separates = [](char c) { return c == '-' || c == '_' || c == ' '; };
+  return (name.starts_with(words) && separates(name[words.size()])) ||
+         (name.ends_with(words) && separates(name[name.size() - words.size() - 1]));
+}
+
 }  // namespace
 
 std::optional<std::string> nearest(std::string_view name, std::span<const std::string> names) {
@@ -39,7 +47,10 @@ std::optional<std::string> nearest(std::string_view name, std::span<const std::s
   const auto closest = std::ranges::min_element(names, {}, distance);
   if (closest == names.end()) return std::nullopt;
   const std::size_t length = std::max(name.size(), closest->size()) - shared_path(name, *closest);
-  return 2 * distance(*closest) > length ? std::nullopt : std::optional(*closest);
+  if (2 * distance(*closest) <= length) return *closest;
+  const auto fits = [&](const std::string& other) { return has_words(other, name); };
+  const auto only = std::ranges::find_if(names, fits);
+  return std::ranges::count_if(names, fits) == 1 ? std::optional(*only) : std::nullopt;
 }
 
 std::string did_you_mean(std::string_view name, std::span<const std::string> names) {
