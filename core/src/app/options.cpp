@@ -57,8 +57,10 @@ bool Options::read(const std::vector<std::string>& words) {
     throw UsageError(std::string(error.what()) + "; see 'grit " + command_.name + " --help'");
   }
   words_ = list("words");
+  const auto takes_value = [&](const std::string& name) { return all.find(name, false).semantic()->max_tokens() > 0; };
   for (const auto& [name, value] : values_)
-    if (const auto* const text = boost::any_cast<std::string>(&value.value()); text != nullptr && text->empty())
+    if (const auto* const text = boost::any_cast<std::string>(&value.value());
+        text != nullptr && text->empty() && takes_value(name))
       throw UsageError("--" + name + " takes a value, not \"\"; see 'grit " + command_.name + " --help'");
   if (std::ranges::find(words_, "") != words_.end())
     throw UsageError(std::string("found an empty name, \"\"; give a file or folder; see 'grit ") + command_.name +
