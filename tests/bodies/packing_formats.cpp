@@ -175,6 +175,50 @@ TEST_F(PackingFormats, LammpsDataIsChecked) {
   EXPECT_THAT(problem("title\n1 2 3 4\n", "lammps-data"), HasSubstr("the header has no line \"N atoms\""));
 }
 
+TEST_F(PackingFormats, LammpsDataHasEachBodyOnceInEachSection) {
+  const std::string good = data_of_liggghts;
+  const auto with = [&](const std::string& old, const std::string& text) {
+    std::string changed = good;
+    return problem(changed.replace(changed.find(old), old.size(), text));
+  };
+  EXPECT_EQ(with("7 2 0.004", "2 2 0.004"), ":13: id is \"2\", as in line 12; each body has an id of its own");
+  EXPECT_EQ(with("2 -0.1 0", "1 -0.1 0"), ":19: id is \"1\", as in line 18; each body has one velocity");
+  EXPECT_EQ(with("Velocities", "Atoms"), ":16: found a second section Atoms; the first is in line 10; allowed is one");
+  EXPECT_EQ(with("0.09 0 0 0", "0.09 0"), ":14: found 8 columns; the first row has 10");
+  EXPECT_EQ(with("7 0 0 1 0 0 0", "7 0 0 1"), ":20: found 4 columns; the first row has 7");
+  // Cut at a line end: refused wherever the bodies or their velocities are not complete.
+  const std::size_t sections = good.find("Atoms"), complete = good.find("Velocities");
+  for (std::size_t end = good.find('\n', sections); end + 1 < good.size(); end = good.find('\n', end + 1))
+    EXPECT_EQ(problem(good.substr(0, end + 1)).empty(), end + 1 == complete - 1 || end + 1 == complete) << end;
+  EXPECT_EQ(problem(good.substr(0, good.find("7 0 0 1"))),
+            ": has 2 lines in the section Velocities; the header gives 3; the file ends in line 19, in the section of "
+            "line 16");
+  EXPECT_EQ(
+      problem("title\n3 atoms\n", "lammps-data"),
+      ": has 0 lines in the section Atoms; the header gives 3; the file ends in line 2, in the section of line 0");
+}
+
+TEST_F(PackingFormats, BodiesHaveDifferentIdsInEveryFormat) {
+  const std::string again = "id is \"7\", as in line ";
+  EXPECT_THAT(problem("id x y z r\n7 1 2 3 4\n8 1 2 3 4\n7 1 2 3 4\n"), HasSubstr(":4: " + again + "2;"));
+  EXPECT_THAT(problem("id,x,y,z,r\n7,1,2,3,4\n7,1,2,3,4\n"), HasSubstr(":3: " + again + "2;"));
+  EXPECT_THAT(problem("#format id_x_y_z_r_matId\n7 1 2 3 4 0\n7 5 6 7 8 1\n"), HasSubstr(":3: " + again + "2;"));
+  EXPECT_THAT(problem("2\nProperties=id:I:1:pos:R:3:radius:R:1\n7 1 2 3 4\n7 5 6 7 8\n"),
+              HasSubstr(":4: " + again + "3;"));
+  std::string dump = dump_of_two_steps;
+  dump.replace(dump.find("1 1 0.1"), 1, "2");
+  FileSource file = source(dump);
+  EXPECT_EQ(problem(file), "");  // in another snapshot
+  file.time_step = 100;
+  EXPECT_THAT(problem(file), HasSubstr(":11: id is \"2\", as in line 10;"));
+  file = source("7 1 2 3 4 sand\n7 5 6 7 8 clay\n");
+  file.columns = {"id", "x", "y", "z", "r", "type"};
+  for (const char* type : {"", "sand", "clay"}) {
+    file.particle_type = type;
+    EXPECT_THAT(problem(file), HasSubstr(":2: " + again + "1;"));
+  }
+}
+
 TEST_F(PackingFormats, LammpsDumpHasTheLastSnapshotOrAnother) {
   FileSource file = source(dump_of_two_steps);
   auto bodies = read_bodies(file);
@@ -203,6 +247,17 @@ TEST_F(PackingFormats, LammpsDumpIsChecked) {
   EXPECT_EQ(with("type diameter z", "type mass z"), ":20: the columns id type mass z y x lack radius or diameter");
   EXPECT_EQ(problem(good.substr(0, good.find("2 3 0.04"))),
             ":20: the snapshot of time step 200 is cut off: it has 0 of 1 body");
+  EXPECT_EQ(with("ATOMS\n2\n", "ATOMS\n15\n"), ":12: the snapshot of time step 100 is cut off: it has 2 of 15 bodies");
+  const std::string begun = good + "ITEM: TIMESTEP\n300\nITEM: NUMBER OF ATOMS\n1\n";
+  const std::string cut =
+      ":22: the snapshot that begins here is cut off: it has no line ITEM: ATOMS; the file ends in line 25; choose "
+      "another snapshot by time_step";
+  EXPECT_EQ(problem(begun), cut);
+  FileSource file = source(begun);
+  file.time_step = 300;
+  EXPECT_EQ(problem(file), cut);
+  file.time_step = 200;
+  EXPECT_EQ(problem(file), "");
   EXPECT_EQ(with("200\n", "2oo\n"), ":13: found \"2oo\"; expected a time step");
   EXPECT_THAT(problem("0 0 0 1\n", "lammps-dump"),
               testing::StartsWith(":1: found \"0 0 0 1\"; expected ITEM: TIMESTEP, with which"));

@@ -41,6 +41,8 @@ std::string joined(std::span<const std::string_view> names) {
   return visible_text(text, 2 * longest_line);
 }
 
+std::string snapshot_of(std::int64_t step) { return "the snapshot of time step " + std::to_string(step); }
+
 bool begins_with_letter(std::string_view line) {
   const auto first = line.find_first_not_of(" \t");
   if (first == line.npos) return false;
@@ -70,13 +72,12 @@ class Packing {
 
   std::vector<Column> columns_of(std::span<const std::string_view> names, int line);
   void check_columns(const std::vector<Column>& columns, const std::string& found, int line);
-  void add(RowReader& reader, std::string_view line, int number) {
-    if (const auto body = reader.read(line, number)) bodies_.push_back(*body);
-  }
+  void add(RowReader& reader, std::string_view line, int number);
   /// `count` rows after the present line.
   void add_rows(RowReader& reader, TextLines lines, std::int64_t count, const std::string& of);
+  [[noreturn]] void raise_cut(int line, const std::string& of, std::int64_t rows, std::int64_t count);
   std::vector<Snapshot> snapshots();
-  void add_velocity(std::string_view line, int number);
+  void add_velocity(std::string_view line, int number, std::size_t columns);
   std::vector<PackedBody> finish(RowReader* reader = nullptr, const std::string& advice = "");
   std::vector<Column> given_columns() const;
 
@@ -84,8 +85,13 @@ class Packing {
   const FileSource& source_;
   PackingFaults faults_;
   std::vector<PackedBody> bodies_;
-  std::unordered_map<std::string_view, std::size_t> by_id_;  // no_body: of a type that is not read
   static constexpr std::size_t no_body = static_cast<std::size_t>(-1);
+  /// A body with an id: its line, that of its velocity, and its index; no_body if it is of a type that is not read.
+  struct Identified {
+    int line = 0, velocity_line = 0;
+    std::size_t body = no_body;
+  };
+  std::unordered_map<std::string_view, Identified> by_id_;
 };
 
 std::vector<Column> Packing::given_columns() const {
@@ -103,6 +109,17 @@ std::vector<Column> Packing::columns_of(std::span<const std::string_view> names,
   std::vector<Column> columns = columns_of_header(names);
   check_columns(columns, joined(names), line);
   return columns;
+}
+
+void Packing::add(RowReader& reader, std::string_view line, int number) {
+  const auto body = reader.read(line, number);
+  if (const std::string_view id = reader.id(); !id.empty()) {
+    const auto [at, is_new] = by_id_.try_emplace(id, Identified{number, 0, body ? bodies_.size() : no_body});
+    if (!is_new)
+      return faults_.add(number, "id is " + quoted_excerpt(id) + ", as in line " + std::to_string(at->second.line) +
+                                     "; each body has an id of its own");
+  }
+  if (body) bodies_.push_back(*body);
 }
 
 std::vector<PackedBody> Packing::finish(RowReader* reader, const std::string& advice) {
@@ -190,10 +207,10 @@ std::vector<PackedBody> Packing::lammps_data() {
   if (!source_.columns.empty()) columns = given_columns();
   RowReader reader(source_, faults_, columns, ' ', true);
   std::optional<std::int64_t> expected;
-  std::string section;  // empty: the header
+  std::string section;                  // empty: the header
+  std::map<std::string, int> sections;  // lines of their titles
   std::vector<std::pair<int, std::string_view>> velocities;
   std::int64_t rows = 0;
-  int line_of_section = 0;
   TextLines lines(text_);
   lines.next();  // a title
   while (lines.next()) {
@@ -201,7 +218,10 @@ std::vector<PackedBody> Packing::lammps_data() {
     if (is_blank(line)) continue;
     const auto cells = words(line);
     if (begins_with_letter(line)) {
-      section = joined(cells), line_of_section = lines.number();
+      section = joined(cells);
+      if (const auto [first, is_new] = sections.try_emplace(section, lines.number()); !is_new)
+        faults_.raise(lines.number(), "found a second section " + section + "; the first is in line " +
+                                          std::to_string(first->second) + "; allowed is one");
       if (section != "Atoms" || !source_.columns.empty()) continue;
       const auto note = lines.line().find('#');
       const auto style =
@@ -213,32 +233,42 @@ std::vector<PackedBody> Packing::lammps_data() {
       if (cells.size() == 2 && cells[1] == "atoms") expected = parse_integer(cells[0]);
     } else if (section == "Atoms") {
       ++rows;
-      const auto body = reader.read(line, lines.number());
-      if (!reader.id().empty()) by_id_[reader.id()] = body ? bodies_.size() : no_body;
-      if (body) bodies_.push_back(*body);
+      add(reader, line, lines.number());
     } else if (section == "Velocities") {
       velocities.emplace_back(lines.number(), line);
     }
   }
+  const auto expect_rows = [&](const std::string& title, std::int64_t found) {
+    if (found != *expected && !faults_.any())
+      faults_.add(0, "has " + std::to_string(found) + " lines in the section " + title + "; the header gives " +
+                         std::to_string(*expected) + "; the file ends in line " + std::to_string(lines.number()) +
+                         ", in the section of line " + std::to_string(section.empty() ? 0 : sections.at(section)));
+  };
   if (!expected) faults_.add(0, "the header has no line \"N atoms\", with which LAMMPS gives their number");
-  else if (rows != *expected && !faults_.any())
-    faults_.add(0, "has " + std::to_string(rows) + " lines in the section Atoms; the header gives " +
-                       std::to_string(*expected) + "; the file ends in line " + std::to_string(lines.number()) +
-                       ", in the section of line " + std::to_string(line_of_section));
+  else expect_rows("Atoms", rows);
   if (!faults_.any())
-    for (const auto& [number, line] : velocities) add_velocity(line, number);
+    for (const auto& [number, line] : velocities) add_velocity(line, number, words(velocities.front().second).size());
+  if (expected && sections.contains("Velocities")) expect_rows("Velocities", std::ssize(velocities));
   return finish(&reader);
 }
 
-/// A row of the section Velocities: id vx vy vz, of spheres also wx wy wz.
-void Packing::add_velocity(std::string_view line, int number) {
+/// A row of the section Velocities, with as many columns as its first row: id vx vy vz, of spheres also wx wy wz.
+void Packing::add_velocity(std::string_view line, int number, std::size_t columns) {
   const auto cells = words(line);
   if (cells.size() != 4 && cells.size() != 7)
     return faults_.add(number, "found " + counted(cells.size(), "column", "columns") +
                                    "; expected 7: id vx vy vz wx wy wz, or the first 4");
+  if (cells.size() != columns)
+    return faults_.add(number, "found " + counted(cells.size(), "column", "columns") + "; the first row has " +
+                                   std::to_string(columns));
   const auto at = by_id_.find(cells[0]);
   if (at == by_id_.end())
     return faults_.add(number, "id is " + quoted_excerpt(cells[0]) + ", which the section Atoms does not have");
+  auto& [_, velocity_line, body] = at->second;
+  if (velocity_line != 0)
+    return faults_.add(number, "id is " + quoted_excerpt(cells[0]) + ", as in line " + std::to_string(velocity_line) +
+                                   "; each body has one velocity");
+  velocity_line = number;
   double values[6] = {};
   for (std::size_t k = 1; k < cells.size(); ++k) {
     auto [value, fault] = parse_number(cells[k]);
@@ -249,14 +279,15 @@ void Packing::add_velocity(std::string_view line, int number) {
                          std::string(names[k - 1]) + " is " + quoted_excerpt(cells[k]) + ": " + std::string(fault));
     values[k - 1] = value;
   }
-  if (at->second == no_body) return;
-  bodies_[at->second].velocity = source_.scale * Vec3(values[0], values[1], values[2]);
-  bodies_[at->second].spin = Vec3(values[3], values[4], values[5]);
+  if (body == no_body) return;
+  bodies_[body].velocity = source_.scale * Vec3(values[0], values[1], values[2]);
+  bodies_[body].spin = Vec3(values[3], values[4], values[5]);
 }
 
 std::vector<Packing::Snapshot> Packing::snapshots() {
   std::vector<Snapshot> all;
   std::optional<std::int64_t> step, count;
+  int begin = 0;  // line of the first item of a snapshot
   TextLines lines(text_);
   const auto integer_below = [&](const char* what) {
     const auto value = lines.next() ? parse_integer(joined(words(lines.line()))) : std::nullopt;
@@ -270,6 +301,7 @@ std::vector<Packing::Snapshot> Packing::snapshots() {
     if (!line.starts_with("ITEM:"))
       faults_.raise(lines.number(), "found " + quoted_excerpt(line, longest_line) +
                                         "; expected ITEM: TIMESTEP, with which each snapshot of a LAMMPS dump begins");
+    if (begin == 0) begin = lines.number();
     auto names = words(line.substr(5));
     const std::string item = joined(names);
     if (item == "TIMESTEP") {
@@ -281,13 +313,18 @@ std::vector<Packing::Snapshot> Packing::snapshots() {
         faults_.raise(lines.number(), "ITEM: ATOMS comes before ITEM: TIMESTEP and ITEM: NUMBER OF ATOMS");
       names.erase(names.begin());
       all.push_back({*step, *count, std::move(names), lines});
-      for (std::int64_t row = 0; row < *count && lines.next(); ++row) continue;
-      step.reset(), count.reset();
+      for (std::int64_t row = 0; row < *count && lines.next(); ++row)
+        if (lines.line().starts_with("ITEM:")) raise_cut(lines.number(), snapshot_of(*step), row, *count);
+      step.reset(), count.reset(), begin = 0;
     } else {
       const int below = item.starts_with("BOX BOUNDS") ? 3 : 1;  // of UNITS and TIME one line
       for (int k = 0; k < below; ++k) lines.next();
     }
   }
+  if (begin != 0 && (source_.time_step < 0 || source_.time_step == step))
+    faults_.raise(begin,
+                  "the snapshot that begins here is cut off: it has no line ITEM: ATOMS; the file ends in line " +
+                      std::to_string(lines.number()) + "; choose another snapshot by time_step");
   return all;
 }
 
@@ -310,15 +347,18 @@ std::vector<PackedBody> Packing::lammps_dump() {
     faults_.raise(line, "the columns " + joined(wanted->names) +
                             " have scaled coordinates; write x y z, as with dump custom id type x y z radius");
   RowReader reader(source_, faults_, columns_of(wanted->names, line));
-  add_rows(reader, wanted->rows, wanted->count, "the snapshot of time step " + std::to_string(wanted->step));
+  add_rows(reader, wanted->rows, wanted->count, snapshot_of(wanted->step));
   return finish(&reader);
+}
+
+void Packing::raise_cut(int line, const std::string& of, std::int64_t rows, std::int64_t count) {
+  faults_.raise(line, of + " is cut off: it has " + std::to_string(rows) + " of " +
+                          counted(static_cast<std::size_t>(count), "body", "bodies"));
 }
 
 void Packing::add_rows(RowReader& reader, TextLines lines, std::int64_t count, const std::string& of) {
   for (std::int64_t row = 0; row < count; ++row) {
-    if (!lines.next() || lines.line().starts_with("ITEM:"))
-      faults_.raise(lines.number(), of + " is cut off: it has " + std::to_string(row) + " of " +
-                                        counted(static_cast<std::size_t>(count), "body", "bodies"));
+    if (!lines.next() || lines.line().starts_with("ITEM:")) raise_cut(lines.number(), of, row, count);
     add(reader, lines.line(), lines.number());
   }
 }

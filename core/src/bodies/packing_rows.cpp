@@ -164,11 +164,18 @@ RowReader::RowReader(const FileSource& source, PackingFaults& faults, std::vecto
 
 std::optional<PackedBody> RowReader::read(std::string_view line, int number) {
   split(line, separator_, cells_);
+  id_ = {};
   if (cells_.size() < columns_.size() || (cells_.size() > columns_.size() && !more_)) {
     std::string names;
     for (const Column one : columns_) names += ' ' + name_of(one);
     faults_.add(number, "found " + counted(cells_.size(), "column", "columns") + "; expected " +
                             (more_ ? "at least " : "") + std::to_string(columns_.size()) + ':' + names);
+    return std::nullopt;
+  }
+  if (width_ == 0) width_ = cells_.size();
+  if (cells_.size() != width_) {
+    faults_.add(number, "found " + counted(cells_.size(), "column", "columns") + "; the first row has " +
+                            std::to_string(width_));
     return std::nullopt;
   }
   if (id_at_) id_ = cells_[*id_at_];

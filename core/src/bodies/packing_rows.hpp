@@ -79,12 +79,12 @@ class PackingFaults {
 /// Reads rows of the same form.
 class RowReader {
  public:
-  /// `more`: whether further cells may follow the columns.
+  /// `more`: whether further cells may follow the columns, as many in each row.
   RowReader(const FileSource& source, PackingFaults& faults, std::vector<Column> columns, char separator = ' ',
             bool more = false);
   /// The body of a row; none if it is at fault or if its type is not the one to read.
   std::optional<PackedBody> read(std::string_view line, int number);
-  /// The cell with the id of the last row; empty without such a column.
+  /// The cell with the id of the last row; empty without such a column, and for a row with other columns.
   std::string_view id() const { return id_; }
   /// Reports a particle type that no row has.
   void check_types();
@@ -98,6 +98,7 @@ class RowReader {
   std::vector<Column> columns_;
   char separator_;
   bool more_;
+  std::size_t width_ = 0;  ///< cells of the first row
   std::optional<std::size_t> type_at_, id_at_;
   std::vector<std::string_view> cells_;
   std::string_view id_;
