@@ -51,6 +51,26 @@ TEST(Usage, EveryCommandHasHelp) {
   }
 }
 
+TEST(Usage, IsInUtf8) {
+  const OwnFolder folder;
+  for (const char* word : {"/title=\xff", "/title=\xc3", "/title=\xed\xa0\x80", "/title=\xc0\xaf"}) {
+    const auto outcome = grit_in(folder.path(), {"check", "two.json", "--set", word});
+    EXPECT_EQ(outcome.status, 1) << word;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("grit: found \"/title=\\x"), HasSubstr("which is not UTF-8"))) << word;
+  }
+  folder.write("\xe9t\xe9.json", "{}");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"run", "\xe9t\xe9.json"}, {"study", "x.json", "--out", "\xff"}, {"\xff"}}) {
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("which is not UTF-8")) << outcome.err;
+  }
+  std::filesystem::create_directory(folder.path() / "\xe9");
+  const auto there = grit_in(folder.path() / "\xe9", {"plugins"});
+  EXPECT_EQ(there.status, 5);
+  EXPECT_THAT(there.err, HasSubstr("\\xe9: the name of the working folder is not UTF-8"));
+}
+
 TEST(Usage, VersionSaysWhatWasBuilt) {
   const OwnFolder folder;
   const auto version = grit_in(folder.path(), {"--version"});

@@ -12,8 +12,10 @@
 #include "app/interrupt.hpp"
 #include "format/message.hpp"
 #include "format/resources.hpp"
+#include "format/utf8.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
+#include "grit/toolkit/text_file.hpp"
 #include "plugins/build_facts.hpp"
 
 namespace grit {
@@ -76,8 +78,21 @@ void check_instruction_set() {
               ", or install several with scripts/package.sh");
 }
 
+/// Values, names and paths of the command line are written into descriptions, run.json and pages.
+void check_encoding(const std::vector<std::string>& words) {
+  for (const std::string& word : words)
+    if (!is_utf8(word))
+      throw UsageError("found " + quoted_excerpt(word) +
+                       ", which is not UTF-8; give all names and values in UTF-8, and rename files of other names");
+  std::error_code none;
+  if (const auto here = std::filesystem::current_path(none).string(); !is_utf8(here))
+    throw FileError(visible_text(here) +
+                    ": the name of the working folder is not UTF-8; rename it, or work in another");
+}
+
 ExitStatus main(const std::vector<std::string>& words) {
   check_instruction_set();
+  check_encoding(words);
   if (words.empty()) {
     print_usage(std::cerr);
     return ExitStatus::usage;

@@ -14,6 +14,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "format/utf8.hpp"
 #include "grit/description.hpp"
 #include "grit/error.hpp"
 #include "storage/seal.hpp"
@@ -112,14 +113,6 @@ hid_t native(Number type) {
       break;
   }
   return H5T_NATIVE_UINT8;
-}
-
-/// Whether a text is UTF-8, which JSON and pages need.
-bool is_utf8(const std::string& text) try {
-  Description(text).dump();
-  return true;
-} catch (const Description::exception&) {
-  return false;
 }
 
 /// Conversions of other types have read beyond their buffers in damaged files.
