@@ -90,12 +90,15 @@ _sealed = {}  # stamps of files whose seals were right
 def _check_seal(path):
     """Raises ResultsError if the file was complete and has been changed since."""
     stamp = _stamp(path)
-    if _sealed.get(path) == stamp or stamp[1] < _SEAL_LENGTH:
+    if _sealed.get(path) == stamp:
         return
     with path.open("rb") as file:
-        file.seek(-_SEAL_LENGTH, 2)
+        file.seek(-min(_SEAL_LENGTH, stamp[1]), 2)
         end = file.read()
         if not end.startswith(_SEAL):
+            # The seal was the last that a run that is done wrote to its series.
+            if path.name == "series.h5" and _run_json(path.parent)["status"] == "done":
+                raise ResultsError(f"{path}: is damaged: its run is done, and the checksum at its end is missing; copy it again, or run the description again")
             return
         file.seek(0)
         left, checksum = stamp[1] - _SEAL_LENGTH, 0

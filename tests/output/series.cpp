@@ -160,6 +160,25 @@ TEST(Series, ThatIsCompleteIsRefusedWithAnyFlippedByte) {
   EXPECT_EQ(read_channel(folder.path(), "test/time").samples, 6u);
 }
 
+TEST(Series, OfARunThatIsDoneHasItsSeal) {
+  const Folder folder;
+  const auto path = folder / "series.h5";
+  {
+    Series series(path, probes);
+    append(series, 0);
+    series.close();
+  }
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
+  std::filesystem::last_write_time(path, {});
+  for (const char* status : {"running", "interrupted", "failed"}) {
+    std::ofstream(folder / "run.json") << R"({"status": ")" << status << "\"}";
+    EXPECT_EQ(SeriesFile(folder.path()).channel("test/time").samples, 1u) << status;
+  }
+  std::ofstream(folder / "run.json") << R"({"status": "done"})";
+  EXPECT_THAT(error_of<FileError>([&] { SeriesFile(folder.path()); }),
+              HasSubstr("series.h5: is damaged: its run is done, and the checksum at its end is missing"));
+}
+
 TEST(Series, IsNotReadFromANamedPipe) {
   const Folder folder;
   ASSERT_EQ(::mkfifo((folder / "series.h5").c_str(), 0600), 0);

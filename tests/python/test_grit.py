@@ -351,6 +351,12 @@ class Results(unittest.TestCase):
             with self.assertRaisesRegex(grit.ResultsError, "series.h5: is damaged, or was changed by another program", msg=place):
                 run.series["packing/time"]
 
+        whole = series.read_bytes()
+        series.write_bytes(whole[:-1])
+        os.utime(series, (0, 0))
+        with self.assertRaisesRegex(grit.ResultsError, "series.h5: is damaged: its run is done, and the checksum at its end is missing"):
+            run.series["packing/time"]
+        series.write_bytes(whole)
         flipped(frame, frame_is_the_same_or_refused)
         flipped(series, series_are_refused)
 
