@@ -144,7 +144,7 @@ namespace {
 
 constexpr int most_runs = 10000;
 
-/// The number of runs, or a few more [in floating point, as it may exceed all integers].
+/// The number of runs, or a few more; it may exceed all integers.
 double most_runs_of(const StudyDescription& study) {
   double crossed = 1, alone = 2;
   for (const auto& [name, setting] : study.settings) {
