@@ -65,6 +65,7 @@ void seal(const std::filesystem::path& path) {
   file << text;
   file.close();
   if (!file) throw FileError(path.string() + ": cannot write: the disk is full, or the file cannot be changed");
+  sync_to_disk(path);
 }
 
 bool is_sealed(const std::filesystem::path& path) {

@@ -6,7 +6,8 @@
 namespace grit {
 
 /// Appends the length and the CRC-32 of a file to it, as its last line. HDF5 ignores what follows its data. The file is
-/// on disk before the seal is, so that no seal outlives what it vouches for. Throws FileError.
+/// on disk before the seal is, so that no seal outlives what it vouches for; and the seal is on disk on return. Throws
+/// FileError.
 void seal(const std::filesystem::path& path);
 
 /// Whether a file is sealed. One without a seal is still being written, or its writer was killed. Throws FileError if
