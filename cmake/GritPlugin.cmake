@@ -14,8 +14,7 @@ function(grit_testing)
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${grit_TESTING_SOURCES}/*.cpp)
   add_library(grit_testing STATIC EXCLUDE_FROM_ALL ${sources})
-  target_compile_options(grit_testing PRIVATE -Wall -Wextra $<$<CXX_COMPILER_ID:Clang>:-Wconversion>
-                         $<$<CXX_COMPILER_ID:Clang>:-Wshadow> $<$<NOT:$<CONFIG:Debug>>:-O1>)
+  target_compile_options(grit_testing PRIVATE -Wall -Wextra $<$<NOT:$<CONFIG:Debug>>:-O1>)
   # Nearly all of a test's compilation is its headers'.
   target_precompile_headers(grit_testing PRIVATE
     <Eigen/Core> <Eigen/Geometry> <nlohmann/json.hpp> <functional> <map> <memory> <optional> <set> <sstream> <string>
@@ -38,11 +37,12 @@ function(grit_plugin folder name)
   set_target_properties(${target}_objects PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
                         VISIBILITY_INLINES_HIDDEN ON)
   # Without a build type there is no optimisation, which makes a contact law slower by an order of magnitude.
-  target_compile_options(${target}_objects PRIVATE -Wall -Wextra $<$<CXX_COMPILER_ID:Clang>:-Wconversion>
-                         $<$<CXX_COMPILER_ID:Clang>:-Wshadow> $<$<CONFIG:>:-O3>)
+  target_compile_options(${target}_objects PRIVATE -Wall -Wextra $<$<CONFIG:>:-O3>)
   target_link_libraries(${target}_objects PUBLIC grit::sdk ${arg_LIBRARIES})
   if(TARGET grit_precompiled_hidden)  # within grit's own tree
     target_precompile_headers(${target}_objects REUSE_FROM grit_precompiled_hidden)
+    target_compile_options(${target}_objects PRIVATE
+                           $<$<CXX_COMPILER_ID:Clang>:-Wconversion> $<$<CXX_COMPILER_ID:Clang>:-Wshadow>)
   endif()
   add_library(${target} MODULE)
   target_link_libraries(${target} PRIVATE ${target}_objects grit::grit)

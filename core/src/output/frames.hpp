@@ -24,9 +24,8 @@ struct FrameExport;
 class Frames {
  public:
   /// Keeps the first `kept` frames and removes later ones, in all formats. Frames that were removed are left out of the
-  /// index; a damaged one is an error, and so is a later
-  /// one that no run wrote, before anything is changed. `formats`: those of FrameExport, in which frames are
-  /// written.
+  /// index; a damaged one is an error, and so is a later one that no run wrote, before anything is changed. `formats`:
+  /// those of FrameExport, in which frames are written.
   Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept = 0,
          std::span<const std::string> formats = {});
 

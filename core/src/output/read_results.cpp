@@ -68,8 +68,8 @@ void try_reading(const std::filesystem::path& path) {
   });
 }
 
-/// Throws FileError for the series of a run that is done: the seal was the last that it wrote to them.
-void expect_unsealed(const std::filesystem::path& path) {
+/// Throws FileError for series without a seal if their run is done: the seal was the last that it wrote to them.
+void expect_unfinished_run(const std::filesystem::path& path) {
   const auto run = read_run_json(path.parent_path());
   if (run && run->value("status", Description()) == "done")
     throw FileError(path.string() +
@@ -84,7 +84,7 @@ hdf5::File settled(const std::filesystem::path& path, std::chrono::milliseconds 
     const Stamp before = stamp_of(path);
     const auto has_stayed = [&] { return !is_being_written(path) && stamp_of(path) == before; };
     if (has_rested(before) && !is_being_written(path)) try {
-        if (!is_sealed(path)) expect_unsealed(path), try_reading(path);
+        if (!is_sealed(path)) expect_unfinished_run(path), try_reading(path);
         hdf5::File copy(path, hdf5::Mode::copy);
         if (has_stayed()) return copy;
       } catch (const FileError&) {

@@ -128,7 +128,6 @@ void restore_series(SeriesJournal& journal, std::span<const ProbeGroup> probes, 
                     ": the journal has other numbers of samples than the checkpoint; start again "
                     "(--overwrite)");
   restored.close();
-  sync_to_disk(series);
 } catch (...) {
   std::error_code ignored;
   std::filesystem::remove(series, ignored);

@@ -33,7 +33,6 @@ void write_state(const std::filesystem::path& path, const StateFile& state, cons
     file.write("state", state.checkpoint.state);
     file.close();
     seal(part);
-    sync_to_disk(part);
   } catch (const FileError&) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);  // incomplete, e.g. because the disk is full
