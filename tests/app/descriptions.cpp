@@ -1201,6 +1201,31 @@ TEST(Check, ReportsTheRun) {
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
+TEST(Check, CountsTheStepsOfEachStageAndRefusesThoseThatNeverEnd) {
+  const OwnFolder folder;
+  auto scene = json::parse(two_grains);
+  scene["stages"][1] = {{"name", "wait"}, {"limit", 1e300}, {"until", {{"type", "time"}, {"value", 0.01}}}};
+  folder.write("two.json", scene.dump());
+  const auto grit = [&](const char* command, const std::vector<std::string>& sets) {
+    std::vector<std::string> words{command, "two.json"};
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    return grit_in(folder.path(), words);
+  };
+  const auto finer = grit("check", {"/time_step/value=1e-6", R"(/stages/1/change={"time_step": {"value": 1e-9}})"});
+  EXPECT_EQ(finer.status, 0) << finer.err;
+  EXPECT_THAT(finer.out, AllOf(HasSubstr("0.0002 s, 200 steps"), HasSubstr("0.01 s, 10000000 steps")));
+  for (const char* command : {"check", "run"}) {
+    for (const char* set : {"/stages/1/until/value=1e15", "/materials/sand/contact_modulus=1e40"}) {
+      const auto endless = grit(command, {set});
+      EXPECT_EQ(endless.status, 2) << command << ' ' << set;
+      EXPECT_THAT(endless.err, HasSubstr("/stages/1/until: time never reaches ")) << command << ' ' << set;
+    }
+    const auto stiff = grit(command, {"/materials/sand/contact_modulus=1e300"});
+    EXPECT_EQ(stiff.status, 2) << command;
+    EXPECT_THAT(stiff.err, HasSubstr("/time_step: time does not advance in steps of 0 s; check the units of "));
+  }
+}
+
 TEST(Check, ReportsTheNumberAndSizeOfFrames) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);

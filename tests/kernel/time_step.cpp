@@ -50,6 +50,24 @@ TEST_F(TimeStep, StaysWhileItCouldBeLittleLonger) {
   EXPECT_DOUBLE_EQ(set(), 0.56 / 0.5 * before);
 }
 
+TEST_F(TimeStep, IsRefusedWhereTimeDoesNotAdvance) {
+  const auto refusal = [&] {
+    try {
+      set();
+    } catch (const NumericsError& error) {
+      EXPECT_EQ(error.keys(), std::vector<std::string>{"time_step"});
+      return error.cause();
+    }
+    return std::string();
+  };
+  state_.time.time = 1e9;
+  EXPECT_EQ(refusal(), "");
+  state_.time.time = 1e15;
+  EXPECT_EQ(refusal().substr(0, 31), "time does not advance in steps ");
+  state_.settings.time_step.value = 1e-12;
+  EXPECT_EQ(refusal().substr(0, 49), "time does not advance in steps of 1e-12 s; check ");
+}
+
 TEST_F(TimeStep, PrescribedAboveTheCriticalOneIsRefused) {
   state_.settings.time_step.value = 1;
   try {

@@ -110,6 +110,29 @@ TEST(Stage, EndsAtATimeOrAfterSteps) {
   EXPECT_EQ(steps_until(steps(7)), 7u);
 }
 
+// Steps that double precision cannot add to its end.
+TEST(Stage, IsNoLongerThanItsStepsReach) {
+  const Description endless = seconds(1e14);
+  for (const Description& until : {endless, Description{{"type", "all"}, {"of", {endless, steps(3)}}},
+                                   Description{{"type", "any"}, {"of", {endless, seconds(2e14)}}}}) {
+    EXPECT_THROW(run(lone(until, 1e15)), DescriptionError) << until;
+    Description d = lone(steps(3));
+    d["stages"].push_back(stage("wait", until));
+    d["stages"][1]["limit"] = 1e15;
+    EXPECT_THROW(run(d), DescriptionError) << "also of a later stage: " << until;
+  }
+  EXPECT_EQ(run(lone({{"type", "any"}, {"of", {endless, steps(2)}}}, 1e15)).summary().steps, 2u);
+
+  Description stiff = lone(steps(3));
+  stiff.erase("time_step");
+  stiff["stages"].push_back(stage("load", seconds(0.5)));
+  stiff["stages"][1]["change"]["materials"]["grain"]["contact_modulus"] = 1e33;
+  const Done done = run(stiff);
+  EXPECT_EQ(done.summary().status, "failed");
+  EXPECT_EQ(done.summary().steps, 4u) << "when the step is known";
+  EXPECT_THAT(done.summary().message, HasSubstr("stage \"load\": time never reaches 0.5"));
+}
+
 TEST(Stage, IsNoShorterThanHalfAStep) {
   const Description brief = seconds(0.4 * dt), rest = {{"type", "unbalanced-force"}, {"below", 0.1}};
   for (const Description& until : {brief, Description{{"type", "all"}, {"of", {brief, seconds(0.3 * dt)}}},

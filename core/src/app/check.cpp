@@ -145,6 +145,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   const Estimate expected = estimate(scene, components, kernel);
   const double dt = expected.dt, most_bodies = expected.most_bodies;
   const std::vector<ExpectedStage>& stages = expected.stages;
+  at_first_instant(scene.document, [&] { check_ends(scene, dt); });
   for (std::size_t i = 0; i < stages.size(); ++i)
     if (stages[i].arriving > 0)
       std::cout << "  " << stages[i].arriving << " more in the stage " << description.stages[i].name << '\n';
@@ -180,7 +181,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   through_stages(description, scene.stages, [&](const SceneDescription& now, std::optional<std::size_t> i) {
     if (!i) return true;
     try {
-      check_oscillations(now, dt);
+      check_oscillations(now, now.time_step.value.value_or(dt));
     } catch (PlacedError& error) {
       error.begun(*i + 1);
       throw;
@@ -193,14 +194,14 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
               << (stage.known   ? ""
                   : stage.usual ? "usually "
                                 : "at most ")
-              << stage.shown() << " s, " << steps_text(stage.shown() / dt) << " steps";
+              << stage.shown() << " s, " << steps_text(stage.shown_steps()) << " steps";
     if (!stage.known)
       std::cout << " (ends by its condition" << (stage.usual ? fmt::format(", {:g} s at most", stage.most) : "") << ')';
     std::cout << '\n';
   }
   const double per_second = planning_speed(std::min(threads, std::max(1u, std::thread::hardware_concurrency())));
-  const double least = expected.least_body_time, most = expected.most_body_time;
-  const auto cost = [&](double body_time) { return expected.seconds(body_time, per_second); };
+  const double least = expected.least_body_steps, most = expected.most_body_steps;
+  const auto cost = [&](double body_steps) { return body_steps / per_second; };
   std::cout << "\nestimated time on " << threads << (threads == 1 ? " thread" : " threads") << " at "
             << 1e-6 * per_second << " M particle-steps/s: " << hours_text(cost(least))
             << (expected.all_known ? "" : " at least (the end of a stage without typical_time is unknown)");

@@ -37,7 +37,7 @@ Estimate estimate(const Scene& scene, const Components& components, const Kernel
   all.most_bodies = static_cast<double>(bodies);
   for (const ExpectedStage& stage : all.stages) {
     all.most_bodies = std::max(all.most_bodies, stage.bodies);
-    all.least_body_time += stage.least_body_time, all.most_body_time += stage.most_body_time;
+    all.least_body_steps += stage.least_body_time / stage.dt, all.most_body_steps += stage.most_body_time / stage.dt;
     all.all_known = all.all_known && (stage.known || stage.usual);
   }
   all.memory_now = static_cast<double>(kernel.state().bytes());

@@ -16,14 +16,10 @@ struct Estimate {
   double dt = 0;  ///< expected time step [s]
   std::vector<ExpectedStage> stages;
   double most_bodies = 0;
-  /// Bodies times simulated time [s]: with the known and typical durations of stages, and if stages run to their
-  /// limits.
-  double least_body_time = 0, most_body_time = 0;
+  /// Particle-steps: with the known and typical durations of stages, and if stages run to their limits.
+  double least_body_steps = 0, most_body_steps = 0;
   bool all_known = true;                    ///< whether each stage has a known or typical duration
   double memory_now = 0, memory_dense = 0;  ///< at the first instant, and with the contacts of a dense packing [bytes]
-
-  /// Time of a run [s] of so many particle-steps/s.
-  double seconds(double body_time, double speed) const { return body_time / dt / speed; }
 };
 
 /// Particle-steps/s of so many threads.

@@ -189,8 +189,8 @@ void print(const StudyResult& result) {
 void enlarge(TaskLimits& most, const LiveScene& live, const Scene& scene, const Registry& registry, unsigned threads) {
   try {
     const Estimate one = estimate(live, scene, registry);
-    const double body_time = one.all_known ? one.least_body_time : one.most_body_time;
-    most.seconds = std::max(most.seconds, one.seconds(body_time, planning_speed(threads)));
+    const double body_steps = one.all_known ? one.least_body_steps : one.most_body_steps;
+    most.seconds = std::max(most.seconds, body_steps / planning_speed(threads));
     most.bytes = std::max({most.bytes, one.memory_now, one.memory_dense});
   } catch (const NumericsError&) {
     // A variant that fails at once takes nothing.

@@ -1,4 +1,4 @@
-// Time, step number and time step of a simulation.
+// Time, step number and time step of a simulation, and whether time advances.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,9 @@
 #include "grit/archive.hpp"
 
 namespace grit {
+
+/// Whether a step of `dt` [s] changes the time: double precision loses steps that are too short.
+constexpr bool advances(double time, double dt) { return time + dt > time; }
 
 struct StepTime {
   double time = 0;  ///< since the start of the run [s]

@@ -44,6 +44,12 @@ double step_of_displacements(const State& state, const DisplacementBounds& bound
   return max_displacement(settings.time_step, settings.guards) / (raise_when * bounds.displacement_rate());
 }
 
+void check_advance(const State& state) {
+  if (advances(state.time.time, state.time.dt)) return;
+  fail(state, Guard::none, {"time_step"}, "time does not advance in steps of " + number(state.time.dt) + " s",
+       "check the units of stiffnesses, densities, sizes and velocities, of which the time step is a function");
+}
+
 }  // namespace
 
 CriticalStep::Instant TimeStepControl::near_contacts(const State& state) const {
@@ -118,6 +124,7 @@ void TimeStepControl::choose(const Demand& contacts, State& state, const Displac
            "the time step " + number(*wish.value) + " s is above the critical one, " + number(critical_time_step_) +
                " s",
            "remove /time_step/value, or set /time_step/allow_unstable to true");
+    check_advance(state);
     state.walls.check_oscillations(dt);
     return;
   }
@@ -130,6 +137,7 @@ void TimeStepControl::choose(const Demand& contacts, State& state, const Displac
                       "them stiffer, or set /time_step/value");
   safe = std::min(safe, step_of_displacements(state, bounds));
   if (dt == 0 || safe < dt || safe > raise_when * dt) dt = safe;
+  check_advance(state);
   state.walls.check_oscillations(dt);
 }
 

@@ -11,45 +11,11 @@
 #include "bodies/make_bodies.hpp"
 #include "bodies/stream.hpp"
 #include "description/current_scene.hpp"
+#include "format/number.hpp"
+#include "kernel/step_time.hpp"
 
 namespace grit {
 namespace {
-
-/// The shortest and the longest possible duration [s].
-struct Durations {
-  double least = 0, most = std::numeric_limits<double>::infinity();
-};
-
-/// When a condition is met at the earliest and at the latest, in time steps of `dt`.
-Durations duration_until(const Condition& condition, const SceneDescription& scene, double dt) {
-  const auto combined = [&](const Conditions& conditions, auto choose) {
-    std::optional<Durations> both;
-    for (const Condition& one : conditions.of) {
-      const Durations its = duration_until(one, scene, dt);
-      both = both ? Durations{choose(both->least, its.least), choose(both->most, its.most)} : its;
-    }
-    return both.value_or(Durations{});
-  };
-  const auto exactly = [](double time) { return Durations{time, time}; };
-  return std::visit(
-      [&]<class C>(const C& is) -> Durations {
-        if constexpr (std::same_as<C, TimeCondition>) return exactly(is.value);
-        if constexpr (std::same_as<C, StepsCondition>) return exactly(static_cast<double>(is.value) * dt);
-        if constexpr (std::same_as<C, AllCondition>)
-          return combined(is, [](double a, double b) { return std::max(a, b); });
-        if constexpr (std::same_as<C, AnyCondition>)
-          return combined(is, [](double a, double b) { return std::min(a, b); });
-        if constexpr (std::same_as<C, DisplacementCondition>) {
-          const MotionDescription& motion = scene.walls.at(is.wall).motion;
-          const int axis = is.axis[0] - 'x';
-          const double speed = motion.velocity[axis];
-          const bool swings = motion.oscillation && motion.oscillation->amplitude[axis] != 0;
-          if (speed != 0 && !swings) return exactly(std::abs(is.value / speed) + 0.5 * motion.ramp_time);
-        }
-        return {};
-      },
-      condition.is.value());
-}
 
 /// Bodies as one possible course of the run has them.
 class Course {
@@ -84,6 +50,59 @@ class Course {
 };
 
 }  // namespace
+
+Durations duration_until(const Condition& condition, const SceneDescription& scene, double dt) {
+  const auto combined = [&](const Conditions& conditions, auto choose) {
+    std::optional<Durations> both;
+    for (const Condition& one : conditions.of) {
+      const Durations its = duration_until(one, scene, dt);
+      both = both ? Durations{choose(both->least, its.least), choose(both->most, its.most)} : its;
+    }
+    return both.value_or(Durations{});
+  };
+  const auto exactly = [](double time) { return Durations{time, time}; };
+  return std::visit(
+      [&]<class C>(const C& is) -> Durations {
+        if constexpr (std::same_as<C, TimeCondition>) return exactly(is.value);
+        if constexpr (std::same_as<C, StepsCondition>) return exactly(static_cast<double>(is.value) * dt);
+        if constexpr (std::same_as<C, AllCondition>)
+          return combined(is, [](double a, double b) { return std::max(a, b); });
+        if constexpr (std::same_as<C, AnyCondition>)
+          return combined(is, [](double a, double b) { return std::min(a, b); });
+        if constexpr (std::same_as<C, DisplacementCondition>) {
+          const MotionDescription& motion = scene.walls.at(is.wall).motion;
+          const int axis = is.axis[0] - 'x';
+          const double speed = motion.velocity[axis];
+          const bool swings = motion.oscillation && motion.oscillation->amplitude[axis] != 0;
+          if (speed != 0 && !swings) return exactly(std::abs(is.value / speed) + 0.5 * motion.ramp_time);
+        }
+        return {};
+      },
+      condition.is.value());
+}
+
+void check_end(const std::string& stage, std::size_t index, double end, double dt) {
+  if (advances(end, dt)) return;
+  throw NumericsError("stage \"" + stage + '"',
+                      "time never reaches " + number(end) + " s, the end of this stage, in steps of " + number(dt) +
+                          " s, which double precision cannot add to it; end the stage sooner, or check the units of "
+                          "stiffnesses, densities, sizes and velocities, of which the time step is a function",
+                      Guard::none, {"stages", std::to_string(index), "until"});
+}
+
+void check_ends(const Scene& scene, double dt) {
+  double end = 0;
+  std::size_t next = 0;
+  through_stages(*scene.description, scene.stages, [&](const SceneDescription& now, std::optional<std::size_t> i) {
+    if (!i || *i < next) return true;
+    const StageDescription& stage = scene.description->stages[*i];
+    const double own = now.time_step.value.value_or(dt);
+    end += duration_until(stage.until, now, own).least;
+    check_end(stage.name, *i, end, own);
+    next = *i + 1;
+    return true;
+  });
+}
 
 double ExpectedStream::entered(double time) const { return std::min(limit, rate * time); }
 
@@ -123,7 +142,8 @@ std::vector<ExpectedStage> expected_stages(const Scene& scene, const Components&
     if (!i || all.size() > *i) return true;
     const StageDescription& stage = description.stages[*i];
     ExpectedStage one;
-    const Durations bounds = duration_until(stage.until, now, dt);
+    one.dt = now.time_step.value.value_or(dt);
+    const Durations bounds = duration_until(stage.until, now, one.dt);
     one.known = bounds.least == bounds.most;
     one.usual = !one.known && stage.typical_time;
     one.least = one.usual ? std::clamp(*stage.typical_time, bounds.least, bounds.most) : bounds.least;

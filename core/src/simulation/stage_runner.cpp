@@ -8,6 +8,7 @@
 #include "grit/error.hpp"
 #include "kernel/stopwatch.hpp"
 #include "run/falling.hpp"
+#include "simulation/expected_stages.hpp"
 #include "storage/parsed_json.hpp"
 
 namespace grit {
@@ -47,6 +48,7 @@ void StageRunner::prepare() {
 
 void StageRunner::start() {
   kernel_.find_forces();
+  check_ends(scene_, world_.dt());
   begin_stage(world_.time());
   begin_recording();
 }
@@ -151,6 +153,7 @@ void StageRunner::show_instant() {
 void StageRunner::decide() {
   if (instant_.is_decided) return;
   instant_.is_decided = true;
+  if (world_.step() == start_.step + 1) refuse_without_an_end();  // now that the stage has its own time step
   ramp();
   // Before forces, which may change the time step: a stage ends at the same step, whoever samples.
   instant_.may_end = may_be_met(description().until, kernel_, start_);
@@ -259,6 +262,12 @@ void StageRunner::refuse_without_a_step(const StageDescription& stage) const {
                         " s, less than half of the time step of " + number(world_.dt()) +
                         " s, so that it would take no step; give it more time (/stages/" + std::to_string(stage_) +
                         "/until) or a shorter step (/time_step)");
+}
+
+void StageRunner::refuse_without_an_end() const {
+  const StageDescription& stage = description();
+  const double least = duration_until(stage.until, live_.now(), world_.dt()).least;
+  check_end(stage.name, stage_, start_.time + least, world_.dt());
 }
 
 void StageRunner::fail_late(const StageDescription& stage) const {

@@ -95,6 +95,8 @@ class StageRunner {
   void note(Set set);
   void serialize(Archive& archive);
   void refuse_without_a_step(const StageDescription& stage) const;
+  /// If time cannot reach the end of the present stage.
+  void refuse_without_an_end() const;
   [[noreturn]] void fail_late(const StageDescription& stage) const;
   std::string advice_when_late(const StageDescription& stage) const;
   bool too_late(const StageDescription& stage) const { return world_.time() - start_.time > stage.limit; }
