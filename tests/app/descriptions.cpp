@@ -1226,6 +1226,22 @@ TEST(Check, CountsTheStepsOfEachStageAndRefusesThoseThatNeverEnd) {
   }
 }
 
+TEST(Check, ReportsTheSpeedThatShortensTheTimeStep) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto speed = [&](const std::string& set) {
+    const std::string out = grit_in(folder.path(), {"check", "two.json", "--set", set}).out;
+    std::smatch found;
+    return std::regex_search(out, found, std::regex("shorter where bodies or walls are faster than ([0-9.e+-]+) m/s"))
+               ? std::stod(found[1])
+               : 0;
+  };
+  const double usual = speed("/seed=1");
+  EXPECT_GT(usual, 0);
+  EXPECT_NEAR(speed("/time_step/max_displacement=4e-6") / usual, 1e-4, 1e-6) << "the default is 0.04";
+  EXPECT_EQ(speed("/time_step/value=1e-6"), 0) << "it stays as prescribed";
+}
+
 TEST(Check, ReportsTheNumberAndSizeOfFrames) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);

@@ -164,6 +164,11 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
             << " s at the start; ";
   if (!wish.value && kernel.world().dt() < safe)
     std::cout << wish.steps_per_impact << " steps per impact of two bodies; ";
+  if (!wish.value && bodies > 0)
+    std::cout << "shorter where bodies or walls are faster than "
+              << number(max_displacement(wish, description.guards) * kernel.state().statistics.smallest_radius /
+                        kernel.world().dt())
+              << " m/s; ";
   std::cout << "updated as contacts change\n";
   const double memory_now = expected.memory_now, memory_dense = expected.memory_dense,
                memory_free = memory_now + available_memory();
