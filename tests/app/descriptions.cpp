@@ -981,6 +981,46 @@ TEST_F(CheckedServos, MustNotCrushSoftBodies) {
               StartsWith("/materials/sand: too soft: under the weight of the bodies, "));
 }
 
+TEST(Descriptions, CheckWarnsOfWallsThatAreTooFastForThePrescribedStep) {
+  const OwnFolder folder;
+  auto scene = json::parse(two_grains);
+  scene["time_step"]["value"] = 1e-6;
+  scene["walls"]["lid"] = {{"type", "plane"}, {"material", "sand"}, {"point", {0, 0, 1}}, {"normal", {0, 0, -1}}};
+  scene["walls"]["gate"] = {{"type", "rectangle"},
+                            {"material", "sand"},
+                            {"corner", {0.5, 0, 0}},
+                            {"edge_a", {0, 0.1, 0}},
+                            {"edge_b", {0, 0, 0.1}}};
+  scene["stages"][1] = {
+      {"name", "press"}, {"until", {{"type", "steps"}, {"value", 2}}}, {"limit", 1}, {"change", json::object()}};
+  folder.write("scene.json", scene.dump());
+  const auto check = [&](const std::vector<std::string>& sets) {
+    std::vector<std::string> words{"check", "scene.json"};
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const auto motion = [](const std::string& wall, const std::string& motion) {
+    return R"(/stages/1/change={"walls": {")" + wall + R"(": {"motion": )" + motion + "}}}";
+  };
+  const auto none = testing::Not(HasSubstr("/motion: in stage"));
+  EXPECT_THAT(
+      check({motion("lid", R"({"velocity": [0, 0, -400]})")}),
+      HasSubstr("\nwarning\n  /walls/lid/motion: in stage \"press\" the wall moves by 0.0004 m in a time step of "
+                "1e-06 s, 0.4 of the smallest radius and more than /guards/travel 0.05: the run stops where "
+                "it meets bodies; reduce its speed or /time_step/value\n"));
+  EXPECT_THAT(check({motion("lid", R"({"oscillation": {"amplitude": [0, 0, 0.01], "frequency": 1e4}})")}),
+              HasSubstr("0.6283 of the smallest radius"));
+  EXPECT_THAT(check({motion("gate", R"({"spin": [0, 0, 1e4]})")}), HasSubstr("/walls/gate/motion: in stage"));
+  EXPECT_THAT(check({motion("gate", R"({"spin": [1e4, 0, 0]})")}), none) << "in its own plane";
+  EXPECT_THAT(check({motion("lid", R"({"velocity": [400, 0, 0]})")}), none) << "along itself";
+  EXPECT_THAT(check({motion("lid", R"({"velocity": [0, 0, 400]})")}), none) << "away from bodies";
+  EXPECT_THAT(check({motion("lid", R"({"velocity": [0, 0, -40]})")}), none) << "slow enough";
+  EXPECT_THAT(check({motion("lid", R"({"velocity": [0, 0, -400]})"), "/time_step=null"}), none)
+      << "the step follows it";
+}
+
 TEST(Descriptions, CheckReportsADepthWithMoreContactsThanScatterJustifies) {
   const OwnFolder folder;
   auto many = json::parse(two_grains);

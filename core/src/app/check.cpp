@@ -24,6 +24,7 @@
 #include "lint/doubtful_targets.hpp"
 #include "lint/endless_fall.hpp"
 #include "lint/excess_depth.hpp"
+#include "lint/fast_walls.hpp"
 #include "lint/installed_studies.hpp"
 #include "lint/odd_densities.hpp"
 #include "lint/repeated_geometry.hpp"
@@ -220,6 +221,8 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     if (warning) warnings.push_back(*warning);
   std::ranges::move(tensile_targets(scene, live.geometries().all()), std::back_inserter(warnings));
   std::ranges::move(missed_targets(scene), std::back_inserter(warnings));
+  std::ranges::move(fast_walls(scene, live.geometries().all(), kernel.state().statistics.smallest_radius),
+                    std::back_inserter(warnings));
   std::ranges::move(soft_contacts(scene, kernel.world()), std::back_inserter(warnings));
   std::ranges::move(odd_densities(description), std::back_inserter(warnings));
   for (const auto& [pointer, why] : warnings) std::cout << "\nwarning\n  " << pointer << ": " << why << '\n';
