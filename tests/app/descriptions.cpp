@@ -1021,6 +1021,47 @@ TEST(Descriptions, CheckWarnsOfWallsThatAreTooFastForThePrescribedStep) {
       << "the step follows it";
 }
 
+TEST(Descriptions, CheckWarnsOfWallsThatFaceAway) {
+  const OwnFolder folder;
+  auto scene = json::parse(two_grains);
+  scene["engines"]["gravity"] = {{"type", "gravity"}};
+  folder.write("scene.json", scene.dump());
+  const auto check = [&](const std::vector<std::string>& walls) {
+    std::vector<std::string> words{"check", "scene.json"};
+    for (std::size_t i = 0; i < walls.size(); ++i)
+      words.insert(words.end(), {"--set", "/walls/w" + std::to_string(i) + "=" + walls[i]});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const auto floor = [](double height, const std::string& edges, const std::string& more = "") {
+    return R"({"type": "rectangle", "material": "sand", "corner": [-0.01, -0.01, )" + std::to_string(height) + "], " +
+           edges + more + "}";
+  };
+  const std::string up = R"("edge_a": [0.02, 0, 0], "edge_b": [0, 0.02, 0])",
+                    down = R"("edge_a": [0, 0.02, 0], "edge_b": [0.02, 0, 0])",
+                    warning =
+                        "\nwarning\n  /walls/w0: 2 of 2 bodies are behind it, none is in front: it holds only bodies "
+                        "in front of it; ";
+  const auto none = testing::Not(HasSubstr("are behind it"));
+  EXPECT_THAT(check({floor(-0.005, up)}), none);
+  EXPECT_THAT(check({floor(-0.005, down)}), HasSubstr(warning + "exchange edge_a and edge_b"));
+  EXPECT_THAT(check({floor(-0.005, down, R"(, "two_sided": true)")}), none);
+  EXPECT_THAT(check({floor(-0.005, down, R"(, "motion": {"spin": [1, 0, 0]})")}), none) << "it turns towards them";
+  EXPECT_THAT(check({floor(-0.005, down), floor(-0.004, up)}), none) << "the back of a plate";
+  const auto tube = [](const std::string& inside, double radius) {
+    return R"({"type": "cylinder", "material": "sand", "start": [-0.02, 0, -0.03], "end": [0.02, 0, -0.03], "inside": )" +
+           inside + R"(, "radius": )" + std::to_string(radius) + "}";
+  };
+  EXPECT_THAT(check({tube("true", 0.1)}), none);
+  EXPECT_THAT(check({tube("false", 0.1)}), HasSubstr(warning + "set its \"inside\" to the side of the bodies"));
+  EXPECT_THAT(check({tube("true", 0.01)}), HasSubstr(warning));
+  EXPECT_THAT(check({tube("false", 0.01)}), none);
+  EXPECT_THAT(check({floor(-0.005, down), R"({"type": "plane", "material": "sand", "point": [0, 0, -0.1]})"}),
+              HasSubstr(warning))
+      << "a wall beyond it does not hide it";
+}
+
 TEST(Descriptions, CheckReportsADepthWithMoreContactsThanScatterJustifies) {
   const OwnFolder folder;
   auto many = json::parse(two_grains);

@@ -30,6 +30,7 @@
 #include "lint/repeated_geometry.hpp"
 #include "lint/short_reach.hpp"
 #include "lint/soft_contacts.hpp"
+#include "lint/turned_walls.hpp"
 #include "lint/unmoved_bodies.hpp"
 #include "lint/unused_materials.hpp"
 #include "lint/unused_motions.hpp"
@@ -225,6 +226,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
                     std::back_inserter(warnings));
   std::ranges::move(soft_contacts(scene, kernel.world()), std::back_inserter(warnings));
   std::ranges::move(odd_densities(description), std::back_inserter(warnings));
+  std::ranges::move(turned_walls(scene, kernel.world()), std::back_inserter(warnings));
   for (const auto& [pointer, why] : warnings) std::cout << "\nwarning\n  " << pointer << ": " << why << '\n';
   auto idle = unused_settings(scene, components, kernel);
   std::ranges::move(unused_motions(scene), std::back_inserter(idle));

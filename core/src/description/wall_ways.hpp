@@ -13,6 +13,12 @@ inline bool stands_still(const MotionDescription& motion) {
          !motion.follow && !motion.free && !motion.free_rotation && !motion.surface_moves();
 }
 
+/// Whether the normals of a wall may change.
+inline bool turns(const MotionDescription& motion) {
+  return !motion.spin.isZero(0.0) || motion.free_rotation ||
+         (motion.oscillation && !motion.oscillation->angle.isZero(0.0));
+}
+
 /// Whether a wall's reference point may move in the positive and negative direction of an axis.
 struct Ways {
   bool along = false, against = false;

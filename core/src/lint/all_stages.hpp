@@ -44,6 +44,13 @@ bool always_by_law(const Scene& described, Is is) {
   });
 }
 
+/// Whether bodies appear after the first instant.
+inline bool bodies_come_later(const SceneDescription& start) {
+  return std::ranges::any_of(start.bodies, [](const auto& group) {
+    return !group.second.stage.empty() || std::holds_alternative<StreamSource>(group.second.source.value());
+  });
+}
+
 /// Maximum duration of a stage [s].
 inline double longest(const StageDescription& stage) {
   const auto* time = std::get_if<TimeCondition>(&stage.until.is.value());

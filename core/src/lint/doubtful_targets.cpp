@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "description/wall_ways.hpp"
 #include "lint/all_stages.hpp"
 
 namespace grit {
@@ -21,11 +22,6 @@ constexpr std::size_t normal_components = 3;  // xx, yy, zz come first
 bool attracts(const ContactLaw& law) {
   constexpr double radius = 1e-3;  // m; any has a reach or none
   return std::ranges::any_of(law.reaches(radius), [](double reach) { return reach > 0; });
-}
-
-bool turns(const MotionDescription& motion) {
-  return !motion.spin.isZero(0.0) || motion.free_rotation ||
-         (motion.oscillation && !motion.oscillation->angle.isZero(0.0));
 }
 
 /// Values of a servo during the stages, if it acts throughout.

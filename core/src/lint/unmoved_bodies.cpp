@@ -70,12 +70,6 @@ bool nothing_pushes(const Scene& described) {
 
 bool is_stream(const BodiesDescription& group) { return std::holds_alternative<StreamSource>(group.source.value()); }
 
-/// Whether all bodies are there from the start.
-bool is_complete(const SceneDescription& start) {
-  return !start.begin &&
-         std::ranges::all_of(start.bodies, [](const auto& group) { return group.second.stage.empty(); });
-}
-
 }  // namespace
 
 std::optional<UnusedSetting> unmoved_bodies(const Scene& described, const World& world) {
@@ -87,7 +81,8 @@ std::optional<UnusedSetting> unmoved_bodies(const Scene& described, const World&
   const bool still = !pushed && is_at_rest(world) && std::ranges::none_of(start.bodies, moves);
   const bool flows = std::ranges::any_of(start.bodies, enters);
   // A velocity alone has a use: in collisions. It does not make bodies rest on each other.
-  const bool in_vain = flows || (!pushed && is_complete(start) && std::ranges::any_of(start.stages, waits));
+  const bool in_vain =
+      flows || (!pushed && !start.begin && !bodies_come_later(start) && std::ranges::any_of(start.stages, waits));
   if (!(still || in_vain) || !nothing_pushes(described)) return std::nullopt;
   if (still)
     return UnusedSetting{

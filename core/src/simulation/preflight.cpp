@@ -8,6 +8,7 @@
 
 #include "contact/critical_step.hpp"
 #include "description/servo_face.hpp"
+#include "description/wall_ways.hpp"
 #include "format/number.hpp"
 #include "input/places.hpp"
 #include "simulation/mixed_law.hpp"
@@ -42,9 +43,7 @@ class ServoCheck {
   /// The normal of a wall after a rotation is known only during the run.
   void note_turns(const SceneDescription& now) {
     for (const auto& [name, wall] : now.walls)
-      if (const MotionDescription& motion = wall.motion; !motion.spin.isZero(0.0) || motion.free_rotation ||
-                                                         (motion.oscillation && !motion.oscillation->angle.isZero(0.0)))
-        turned_.insert(name);
+      if (turns(wall.motion)) turned_.insert(name);
   }
 
  private:
