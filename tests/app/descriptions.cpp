@@ -1062,6 +1062,41 @@ TEST(Descriptions, CheckWarnsOfWallsThatFaceAway) {
       << "a wall beyond it does not hide it";
 }
 
+TEST(Descriptions, CheckWarnsWhereGravityPointsToNoWall) {
+  const OwnFolder folder;
+  auto scene = json::parse(two_grains);
+  scene["engines"]["gravity"] = {{"type", "gravity"}};
+  scene["walls"]["pit"] = {{"type", "box"},
+                           {"material", "sand"},
+                           {"low", {-0.01, -0.01, -0.01}},
+                           {"high", {0.01, 0.01, 0.01}},
+                           {"open", {"z_high"}}};
+  scene["stages"][0]["until"] = {{"type", "at-rest"}, {"below", 0.01}};
+  folder.write("scene.json", scene.dump());
+  const auto check = [&](const std::vector<std::string>& sets) {
+    std::vector<std::string> words{"check", "scene.json"};
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string upwards = "/engines/gravity/acceleration=[0, 0, 9.81]";
+  const auto none = testing::Not(HasSubstr("no wall is on the way"));
+  EXPECT_THAT(check({}), none);
+  EXPECT_THAT(check({upwards}), HasSubstr("\nwarning\n  /engines: gravity is (0, 0, 9.81) m/s^2, and no wall is on the "
+                                          "way of the bodies that fall so, but a stage waits for them to rest; "));
+  EXPECT_THAT(check({upwards, R"(/stages/0/until={"type": "time", "value": 1e-3})"}), none) << "they may fly";
+  EXPECT_THAT(check({upwards, "/walls/pit/open=[\"x_high\"]"}), none) << "a lid";
+  EXPECT_THAT(check({"/engines/gravity/acceleration=[9.81, 0, -9.81]"}), none);
+  EXPECT_THAT(check({"/walls/pit=null"}), testing::Not(none)) << "no wall at all";
+  EXPECT_THAT(check({upwards, R"(/walls/lid={"type": "plane", "point": [0, 0, 1], "normal": [0, 0, -1],
+      "material": "sand"})"}),
+              none);
+  EXPECT_THAT(check({upwards, R"(/walls/side={"type": "plane", "point": [-1, 0, 0], "normal": [1, 0, 0],
+      "material": "sand"})"}),
+              testing::Not(none));
+}
+
 TEST(Descriptions, CheckReportsADepthWithMoreContactsThanScatterJustifies) {
   const OwnFolder folder;
   auto many = json::parse(two_grains);

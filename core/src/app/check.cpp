@@ -26,6 +26,7 @@
 #include "lint/excess_depth.hpp"
 #include "lint/fast_walls.hpp"
 #include "lint/installed_studies.hpp"
+#include "lint/missed_floor.hpp"
 #include "lint/odd_densities.hpp"
 #include "lint/repeated_geometry.hpp"
 #include "lint/short_reach.hpp"
@@ -218,7 +219,8 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   if (memory_dense > memory_free)
     warnings.push_back({"/bodies", "up to " + number(most_bodies) + " bodies need about " + bytes_text(memory_dense) +
                                        " of memory, and " + bytes_text(memory_free) + " are available"});
-  for (const auto& warning : {unmoved_bodies(scene, kernel.world()), endless_fall(scene), short_reach(kernel)})
+  for (const auto& warning : {unmoved_bodies(scene, kernel.world()), endless_fall(scene),
+                              missed_floor(scene, kernel.world()), short_reach(kernel)})
     if (warning) warnings.push_back(*warning);
   std::ranges::move(tensile_targets(scene, live.geometries().all()), std::back_inserter(warnings));
   std::ranges::move(missed_targets(scene), std::back_inserter(warnings));
