@@ -98,6 +98,12 @@ TEST_F(PackingFile, WritesSeventeenDigitsAndItsComment) {
   EXPECT_FALSE(std::filesystem::exists(path_.string() + ".part"));
 }
 
+TEST_F(PackingFile, HasNoLineOfItsCommentAsABody) {
+  const Row grain{1, 2, 3, 4};
+  write_packing(path_, {&grain, 1}, "a title\r9 9 9 9\nand\n9 9 9 9");
+  EXPECT_EQ(read_packing(path_).size(), 1u);
+}
+
 TEST_F(PackingFile, NamesFileAndLineOfEachFault) {
   using namespace std::string_literals;
   const std::string text =

@@ -193,9 +193,8 @@ TEST_F(PackingFormats, LammpsDataHasEachBodyOnceInEachSection) {
   EXPECT_EQ(problem(good.substr(0, good.find("7 0 0 1"))),
             ": has 2 lines in the section Velocities; the header gives 3; the file ends in line 19, in the section of "
             "line 16");
-  EXPECT_EQ(
-      problem("title\n3 atoms\n", "lammps-data"),
-      ": has 0 lines in the section Atoms; the header gives 3; the file ends in line 2, in the section of line 0");
+  EXPECT_EQ(problem("title\n3 atoms\n", "lammps-data"),
+            ": has 0 lines in the section Atoms; the header gives 3; the file ends in line 2, in the header");
 }
 
 TEST_F(PackingFormats, BodiesHaveDifferentIdsInEveryFormat) {

@@ -14,6 +14,7 @@
 #include "grit/error.hpp"
 #include "output/grain_view.hpp"
 #include "output/scale.hpp"
+#include "output/svg.hpp"
 #include "svg_elements.hpp"
 
 namespace grit::picture_tests {
@@ -27,6 +28,12 @@ using testing::Not;
 using testing::Pointwise;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Svg, HoldsNoBytesThatXmlCannotHold) {
+  EXPECT_EQ(escaped("<a> & \"b\"\n\t\u00e9"), "&lt;a&gt; &amp; &quot;b&quot;\n\t\u00e9");
+  EXPECT_EQ(escaped("a\xff<"), "a\\xff&lt;");
+  EXPECT_EQ(escaped("a\x01&"), "a\\x01&amp;");
+}
 
 TEST(Scale, TicksAreMultiplesOfOneTwoOrFive) {
   EXPECT_DOUBLE_EQ(nice_step(10, 5), 2);

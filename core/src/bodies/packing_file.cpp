@@ -57,7 +57,7 @@ void write_packing(const std::filesystem::path& path, std::size_t grains, const 
 
   std::string text;
   std::istringstream lines(comment);
-  for (std::string line; std::getline(lines, line);) text += "# " + line + '\n';
+  for (std::string line; std::getline(lines, line);) text += "# " + visible_text(line) + '\n';
   text += "# x y z radius, m\n";
   constexpr std::size_t piece = 1 << 20;
   for (std::size_t i = 0; i < grains; ++i) {

@@ -242,7 +242,8 @@ std::vector<PackedBody> Packing::lammps_data() {
     if (found != *expected && !faults_.any())
       faults_.add(0, "has " + std::to_string(found) + " lines in the section " + title + "; the header gives " +
                          std::to_string(*expected) + "; the file ends in line " + std::to_string(lines.number()) +
-                         ", in the section of line " + std::to_string(section.empty() ? 0 : sections.at(section)));
+                         (section.empty() ? ", in the header"
+                                          : ", in the section of line " + std::to_string(sections.at(section))));
   };
   if (!expected) faults_.add(0, "the header has no line \"N atoms\", with which LAMMPS gives their number");
   else expect_rows("Atoms", rows);

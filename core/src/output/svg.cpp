@@ -1,8 +1,11 @@
 #include "output/svg.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
+#include "format/utf8.hpp"
+#include "grit/toolkit/text_file.hpp"
 #include "output/own_files.hpp"
 
 namespace grit {
@@ -17,6 +20,8 @@ void put(std::string& out, double value) {
 }  // namespace
 
 std::string escaped(std::string_view text) {
+  const auto is_control = [](char c) { return c >= 0 && c < ' ' && c != '\n' && c != '\t' && c != '\r'; };
+  if (!is_utf8(text) || std::ranges::any_of(text, is_control)) return escaped(visible_text(text));
   std::string all;
   for (const char c : text) switch (c) {
       case '&':

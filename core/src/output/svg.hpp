@@ -7,7 +7,7 @@
 
 namespace grit {
 
-/// Escapes a text for SVG and HTML.
+/// Escapes a text for SVG and HTML. One with bytes that these cannot hold becomes that of visible_text().
 std::string escaped(std::string_view text);
 
 struct Point {
