@@ -1,4 +1,4 @@
-// Help, version and wrong command lines: exit status 0 and 1.
+// Help, version and wrong command lines: exit status 0 and 1. Output that cannot be written: 5.
 #include <gmock/gmock.h>
 
 #include <sstream>
@@ -194,6 +194,17 @@ TEST(Usage, MoreThreadsThanThoseOfTheMachineAreReported) {
                                         " at once, and more of them are slower; give " + has + " or fewer\n"));
   }
   EXPECT_THAT(grit_in(folder.path(), {"check", "two.json", "--threads", has}).err, IsEmpty());
+}
+
+TEST(Output, AFullDiskBehindARedirectionIsNoticed) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"schema"}, {"expand", "two.json"}, {"check", "two.json"}, {"plugins"}, {"describe", "walls"}}) {
+    const auto outcome = grit_in(folder.path(), words, "/dev/full");
+    EXPECT_EQ(outcome.status, 5) << words[0];
+    EXPECT_THAT(outcome.err, HasSubstr("standard output cannot be written"));
+  }
 }
 
 }  // namespace
