@@ -5,6 +5,7 @@
 #include <set>
 
 #include "description/motion_checks.hpp"
+#include "format/names.hpp"
 #include "format/number.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 
@@ -14,8 +15,6 @@ namespace {
 const std::vector<std::string> one_axis{"x", "y", "z"};
 const std::vector<std::string> some_axes{"x", "y", "z", "xy", "xz", "yz", "xyz"};
 const std::vector<std::string> all_sides{"-x", "+x", "-y", "+y", "-z", "+z"};
-
-std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
 
 bool is_changeable(const std::string& section) {
   const auto& all = SceneDescription::changeable();

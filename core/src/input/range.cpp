@@ -18,10 +18,4 @@ std::string range_text(const Parameter& parameter, const std::string& spelling) 
   return "any finite number";
 }
 
-std::string listed(const std::vector<std::string>& names, const std::string& otherwise) {
-  std::string text;
-  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-  return names.empty() ? otherwise : text;
-}
-
 }  // namespace grit

@@ -11,7 +11,4 @@ namespace grit {
 /// number" if there is none.
 std::string range_text(const Parameter& parameter, const std::string& spelling);
 
-/// "a, b, c"; `otherwise` if there is nothing to list.
-std::string listed(const std::vector<std::string>& names, const std::string& otherwise = "none");
-
 }  // namespace grit

@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "format/names.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
@@ -15,8 +16,6 @@
 
 namespace grit {
 namespace {
-
-std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
 
 /// `unknown key "colour"; did you mean "color"? Allowed are color, view`
 std::string unknown(const std::string& what, const std::string& found, const std::vector<std::string>& names) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "format/names.hpp"
 #include "input/range.hpp"
 #include "input/units.hpp"
 

@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "format/names.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
-#include "input/range.hpp"
 #include "input/reader.hpp"
 #include "plugins/component.hpp"
 #include "plugins/parameter_values.hpp"

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "description/description.hpp"
-#include "input/range.hpp"
 #include "input/reader.hpp"
 #include "input/units.hpp"
 #include "plugins/parameter_values.hpp"

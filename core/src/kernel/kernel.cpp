@@ -9,6 +9,7 @@
 #include "bodies/kinetic_energy.hpp"
 #include "bodies/make_bodies.hpp"
 #include "description/placed_error.hpp"
+#include "format/names.hpp"
 #include "grit/error.hpp"
 #include "kernel/arrivals.hpp"
 #include "kernel/body_groups.hpp"
@@ -315,13 +316,8 @@ void Kernel::serialize_fields(Archive& archive) {
   found = names;
   archive(found);
   if (found == names) return;
-  const auto listed = [](const std::vector<std::string>& all) {
-    std::string text;
-    for (const std::string& name : all) text += (text.empty() ? "" : ", ") + name;
-    return text.empty() ? "nothing" : text;
-  };
-  throw Error("contacts of the saved state keep " + listed(found) + ", but those of this contact law keep " +
-              listed(names) + "; continue with the description that wrote it");
+  throw Error("contacts of the saved state keep " + listed(found, "nothing") + ", but those of this contact law keep " +
+              listed(names, "nothing") + "; continue with the description that wrote it");
 }
 
 /// Without walls, which come first, and without values that each step recomputes: sums, loads, surfaces. Each part has

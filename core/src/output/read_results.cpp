@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <thread>
 
+#include "format/names.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 #include "grit/toolkit/text_file.hpp"
 #include "output/writing_mark.hpp"
@@ -15,10 +16,6 @@
 
 namespace grit {
 namespace {
-
-std::string listed(const std::vector<std::string>& names) {
-  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
-}
 
 /// Differs if the file was written in between. The resolution of file times is up to 10 ms, so that a stamp is valid
 /// only for a file that has rested for longer.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "format/names.hpp"
 #include "grit/body_kind.hpp"
 #include "grit/contact/contact_law.hpp"
 #include "grit/engine.hpp"
@@ -23,21 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string quoted(const std::string& text) { return '"' + text + '"'; }
-
-/// "a, b, c", or `otherwise` if there are none.
-std::string listed(const std::vector<std::string>& all, const std::string& otherwise) {
-  std::string text;
-  for (const auto& one : all) text += (text.empty() ? "" : ", ") + one;
-  return all.empty() ? otherwise : text;
-}
-
 const Kind& kind_named(const std::string& name) {
   const auto kind = std::ranges::find(kinds, name, &Kind::name);
   if (kind != std::end(kinds)) return *kind;
   std::vector<std::string> all;
   for (const auto& one : kinds) all.push_back(one.name);
-  throw PluginError("unknown kind of plugin " + quoted(name) +
+  throw PluginError("unknown kind of plugin " + in_quotes(name) +
                     did_you_mean(name, all, "allowed are " + listed(all, "")));
 }
 
@@ -50,7 +42,7 @@ bool is_plain(const std::string& name) {
 
 void refuse_path(const Kind& kind, const std::string& name) {
   if (!is_plain(name))
-    throw PluginError(quoted(name) + " is not the name of a " + kind.name +
+    throw PluginError(in_quotes(name) + " is not the name of a " + kind.name +
                       " plugin: allowed are letters, digits and hyphens, not a path; give "
                       "the plugin's directory by --plugin-path or GRIT_PLUGIN_PATH");
 }
@@ -124,7 +116,7 @@ void Registry::refuse_second(const Key& key, bool is_built_in) const {
   const auto files = find_files(directories_, kind_named(kind), name);
   if (files.size() + (is_built_in ? 1 : 0) < 2) return;
   const std::string first = is_built_in ? "built into " + library_file().string() : files[0].string();
-  throw PluginError(kind + " plugin " + quoted(name) + " exists twice: " + first + ", and " +
+  throw PluginError(kind + " plugin " + in_quotes(name) + " exists twice: " + first + ", and " +
                     files[is_built_in ? 0 : 1].string() +
                     "\n  remove one from the folders that are searched, or rename the file and PluginInfo::name");
 }
@@ -136,8 +128,8 @@ fs::path Registry::file(const std::string& kind, const std::string& name) const 
   if (auto found = find_files(directories_, wanted, name); !found.empty()) return std::move(found.front());
 
   const auto all = names(kind);
-  throw PluginError("unknown " + kind + " plugin " + quoted(name) + did_you_mean(name, all) +
-                    "\n  available: " + listed(all, "none") + "\n  " + search_text(kind));
+  throw PluginError("unknown " + kind + " plugin " + in_quotes(name) + did_you_mean(name, all) +
+                    "\n  available: " + listed(all) + "\n  " + search_text(kind));
 }
 
 std::string Registry::search_text(const std::string& kind) const {
@@ -154,7 +146,7 @@ std::string Registry::search_text(const std::string& kind) const {
 
 std::string Registry::title(const std::string& kind, const std::string& name) const {
   const auto from = file(kind, name).string();
-  return kind + " plugin " + quoted(name) + " (" + (from.empty() ? "built in" : from) + ")";
+  return kind + " plugin " + in_quotes(name) + " (" + (from.empty() ? "built in" : from) + ")";
 }
 
 template <class Interface>
