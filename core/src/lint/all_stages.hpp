@@ -44,6 +44,11 @@ bool always_by_law(const Scene& described, Is is) {
   });
 }
 
+/// Whether an engine adds forces to those of contacts; gravity is none of them.
+inline bool has_forces(const EngineMap& engines) {
+  return std::ranges::any_of(engines, [](const auto& one) { return one.second->phase() == Phase::forces; });
+}
+
 /// Whether bodies appear after the first instant.
 inline bool bodies_come_later(const SceneDescription& start) {
   return std::ranges::any_of(start.bodies, [](const auto& group) {

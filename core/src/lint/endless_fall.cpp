@@ -8,13 +8,12 @@ namespace grit {
 
 std::optional<UnusedSetting> endless_fall(const Scene& described) {
   const bool stopped = always_by_engines(described, [](const SceneDescription& now, const EngineMap& engines) {
-    const auto is_force = [](const auto& one) { return one.second->phase() == Phase::forces; };
     const auto falls = [](const MotionSettings& group) {
       return !group.gravity.cwiseProduct(group.free_translation()).isZero(0.0);
     };
     const auto& periodic = now.domain.periodic;
-    return !std::ranges::all_of(periodic, [](bool one) { return one; }) || !now.walls.empty() ||
-           std::ranges::any_of(engines, is_force) || !all_settings(now, engines, falls);
+    return !std::ranges::all_of(periodic, [](bool one) { return one; }) || !now.walls.empty() || has_forces(engines) ||
+           !all_settings(now, engines, falls);
   });
   if (stopped) return std::nullopt;
   return UnusedSetting{"/engines",

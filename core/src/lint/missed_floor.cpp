@@ -14,13 +14,12 @@ namespace {
 std::optional<Vec3> only_gravity(const SceneDescription& start) {
   LiveEngines engines;
   engines.follow(start);
-  const auto is_force = [](const auto& one) { return one.second->phase() == Phase::forces; };
   std::optional<Vec3> gravity;
   const bool alike = all_settings(start, engines.all(), [&](const MotionSettings& group) {
     if (!gravity) gravity = group.gravity;
     return group.gravity == *gravity && !group.holds() && !group.flat;
   });
-  return alike && std::ranges::none_of(engines.all(), is_force) ? gravity : std::nullopt;
+  return alike && !has_forces(engines.all()) ? gravity : std::nullopt;
 }
 
 /// Length beyond which there are neither bodies nor ends of walls [m].

@@ -59,12 +59,11 @@ bool nothing_pushes(const Scene& described) {
   const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
   return std::ranges::none_of(start.stages, grows) &&
          always_by_engines(described, [&](const SceneDescription& now, const EngineMap& engines) {
-           const auto is_force = [](const auto& one) { return one.second->phase() == Phase::forces; };
            const auto is_unmoved = [](const MotionSettings& group) {
              return group.gravity.isZero(0.0) && (!group.prescribed || *group.prescribed == RigidMotion{});
            };
-           return all_settings(now, engines, is_unmoved) && std::ranges::none_of(engines, is_force) &&
-                  !now.domain.deforms() && has_walls_at_rest(now, start);
+           return all_settings(now, engines, is_unmoved) && !has_forces(engines) && !now.domain.deforms() &&
+                  has_walls_at_rest(now, start);
          });
 }
 

@@ -3,6 +3,8 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "description/wall_ways.hpp"
 #include "lint/all_stages.hpp"
@@ -110,25 +112,19 @@ bool comes_spinning(const BodiesDescription& group) {
 /// Whether only contacts can make a sphere rotate: no engine with moments, no spinning or free wall, no clump.
 bool only_contacts_turn(const Scene& described) {
   return always_by_engines(described, [](const SceneDescription& scene, const EngineMap& engines) {
-    return std::ranges::none_of(engines, [](const auto& one) { return one.second->phase() == Phase::forces; }) &&
-           std::ranges::all_of(scene.bodies, [](const auto& one) { return one.second.kind.type() == "sphere"; }) &&
-           std::ranges::all_of(scene.walls, [](const auto& one) {
-             const MotionDescription& motion = one.second.motion;
-             return motion.spin.isZero(0.0) && motion.surface_spin.isZero(0.0) &&
-                    !(motion.oscillation && !motion.oscillation->angle.isZero(0.0)) && !motion.free &&
-                    !motion.free_rotation;
-           });
+    return !has_forces(engines) && std::ranges::all_of(scene.bodies, [](const auto& one) {
+      return one.second.kind.type() == "sphere";
+    }) && std::ranges::all_of(scene.walls, [](const auto& one) {
+      const MotionDescription& motion = one.second.motion;
+      return motion.spin.isZero(0.0) && motion.surface_spin.isZero(0.0) &&
+             !(motion.oscillation && !motion.oscillation->angle.isZero(0.0)) && !motion.free && !motion.free_rotation;
+    });
   });
 }
 
-}  // namespace
+using Say = std::function<void(const std::string& pointer, const std::string& why)>;
 
-std::vector<UnusedSetting> unused_settings(const Scene& described, const Components& components, const Kernel& kernel) {
-  const World& world = kernel.world();
-  const SceneDescription& scene = *described.description;
-  std::vector<UnusedSetting> unused;
-  const auto say = [&](const std::string& pointer, const std::string& why) { unused.push_back({pointer, why}); };
-
+void find_idle_engines(const Scene& described, const Components& components, const Say& say) {
   for (const auto& [engine, instance] : components.engines) {
     const std::string& name = engine;
     const bool is_of_settings = instance->phase() == Phase::settings;
@@ -148,48 +144,56 @@ std::vector<UnusedSetting> unused_settings(const Scene& described, const Compone
              }))
       say("/engines/" + name, "bodies are held along the axis on which it acts");
   }
+}
+
+/// Why no body ever rotates; "" if one may.
+std::string why_none_rotates(const Scene& described, const World& world, bool smooth) {
+  const bool spun = std::ranges::any_of(world.spins(), [](const Row& w) { return !xyz(w).isZero(0.0); }) ||
+                    std::ranges::any_of(described.description->bodies,
+                                        [](const auto& group) { return comes_spinning(group.second); });
+  if (spun) return "";
   const bool never_turn = always_by_engines(described, [](const SceneDescription& now, const EngineMap& engines) {
     return all_settings(now, engines, [](const MotionSettings& group) { return group.free_rotation().isZero(0.0); });
   });
-  const bool spun = std::ranges::any_of(world.spins(), [](const Row& w) { return !xyz(w).isZero(0.0); }) ||
-                    std::ranges::any_of(scene.bodies, [](const auto& group) { return comes_spinning(group.second); });
-  const Description values = resolved(scene);
-  const bool smooth = is_smooth(described);
-  const std::string still = spun                                      ? ""
-                            : never_turn                              ? "rotations are held"
-                            : smooth && only_contacts_turn(described) ? "without friction spheres do not rotate"
-                                                                      : "";
-  if (!still.empty()) {
-    if (scene.output.picture && scene.output.picture->color == "rotation")
-      say("/output/picture/color", still + ", so that all rotations are 0; choose another colour");
-    for (const auto& [name, probe] : components.probes)
-      if (probe->needs().has(BodyState::rotation))
-        say("/probes/" + name, "it samples rotations, but " + still + ", so that they are all 0");
-  }
-  const Description& written = described.document.json();
-  if (!still.empty() && only_contacts_turn(described))
-    for (const std::string kind : {"rolling", "twisting"})
-      for (const char* section : {"materials", "interfaces"})
-        for (const auto& [name, one] : values.at(section).items())
-          for (const char* of : {"_stiffness", "_limit"}) {
-            const std::string pointer = std::string("/") + section + '/' + pointer_token(name) + '/' + kind + of;
-            if (written.contains(Description::json_pointer(pointer)) && one.at(kind + of) != 0.0)
-              say(pointer, still + ", so that the moment is 0");
-          }
-  for (const std::string kind : {"rolling", "twisting"})
-    for (const auto& [lacking, given] : {std::pair("_limit", "_stiffness"), std::pair("_stiffness", "_limit")}) {
-      if (!is_zero(described, kind + lacking)) continue;
-      for (const char* section : {"materials", "interfaces"})
-        for (const auto& [name, one] : values.at(section).items()) {
-          const std::string pointer = std::string("/") + section + '/' + pointer_token(name) + '/' + kind + given;
-          if (written.contains(Description::json_pointer(pointer)) && one.at(kind + given) != 0.0)
-            say(pointer, kind + lacking + " is 0, so that the moment is 0");
-        }
-    }
-  if (smooth && values.at("contacts").value("shear_damping", false))
-    say("/contacts/shear_damping", "without friction there is no shear force");
+  if (never_turn) return "rotations are held";
+  return smooth && only_contacts_turn(described) ? "without friction spheres do not rotate" : "";
+}
 
-  if (!is_random(values) && scene.seed != 1) say("/seed", "nothing is random: all bodies are given");
+void find_rotations_of_none(const SceneDescription& scene, const Components& components, const std::string& why,
+                            const Say& say) {
+  if (scene.output.picture && scene.output.picture->color == "rotation")
+    say("/output/picture/color", why + ", so that all rotations are 0; choose another colour");
+  for (const auto& [name, probe] : components.probes)
+    if (probe->needs().has(BodyState::rotation))
+      say("/probes/" + name, "it samples rotations, but " + why + ", so that they are all 0");
+}
+
+/// Reports those of these contact parameters that are written and not 0.
+void find_written(const Scene& described, const Description& values, const std::vector<std::string>& keys,
+                  const std::string& why, const Say& say) {
+  for (const char* section : {"materials", "interfaces"})
+    for (const auto& [name, one] : values.at(section).items())
+      for (const std::string& key : keys) {
+        const std::string pointer = std::string("/") + section + '/' + pointer_token(name) + '/' + key;
+        if (described.document.json().contains(Description::json_pointer(pointer)) && one.at(key) != 0.0)
+          say(pointer, why);
+      }
+}
+
+/// `still`: why no body rotates, if none does.
+void find_moments_of_nothing(const Scene& described, const Description& values, const std::string& still,
+                             const Say& say) {
+  const std::vector<std::string> kinds{"rolling", "twisting"};
+  if (!still.empty() && only_contacts_turn(described))
+    for (const std::string& kind : kinds)
+      find_written(described, values, {kind + "_stiffness", kind + "_limit"}, still + ", so that the moment is 0", say);
+  for (const std::string& kind : kinds)
+    for (const auto& [lacking, given] : {std::pair("_limit", "_stiffness"), std::pair("_stiffness", "_limit")})
+      if (is_zero(described, kind + lacking))
+        find_written(described, values, {kind + given}, kind + lacking + " is 0, so that the moment is 0", say);
+}
+
+void find_scaling_of_none(const SceneDescription& scene, const World& world, const Say& say) {
   const auto radii = world.positions();
   const auto smallest = std::ranges::min_element(radii, {}, &Row::w);
   const bool all_there =
@@ -200,19 +204,27 @@ std::vector<UnusedSetting> unused_settings(const Scene& described, const Compone
     if (all_there && alone.scaled_radius > 0 && smallest != radii.end() && alone.scaled_radius <= smallest->w)
       say("/engines/" + name + "/below", "no body is smaller");
   }
+}
+
+void find_overlaps_of_present_bodies(const SceneDescription& scene, const Say& say) {
   for (const auto& [name, group] : scene.bodies)
     if (group.stage.empty() && group.overlap != BodiesDescription::usual_overlap)
       say("/bodies/" + name + "/overlap",
           "it applies to bodies inserted by a stage, and these are present from the start");
+}
 
+void find_limits_of_a_given_step(const Scene& described, const Say& say) {
+  const TimeStepDescription usual, &start = described.description->time_step;
   const bool given = always(described, [](const SceneDescription& now) { return now.time_step.value.has_value(); });
-  if (given && scene.time_step.safety != TimeStepDescription().safety)
-    say("/time_step/safety", "the step is given by /time_step/value");
-  if (given && scene.time_step.steps_per_impact != TimeStepDescription().steps_per_impact)
+  if (given && start.safety != usual.safety) say("/time_step/safety", "the step is given by /time_step/value");
+  if (given && start.steps_per_impact != usual.steps_per_impact)
     say("/time_step/steps_per_impact", "the step is given by /time_step/value");
-  if (scene.time_step.allow_unstable &&
+  if (start.allow_unstable &&
       always(described, [](const SceneDescription& now) { return !now.time_step.value && now.time_step.safety <= 1; }))
     say("/time_step/allow_unstable", "with this safety the step is not above the critical one");
+}
+
+void find_materials_of_nothing(const SceneDescription& scene, const Say& say) {
   for (const auto& [name, material] : scene.materials)
     if (!of_body(scene, name) && !of_wall(scene, name)) say("/materials/" + name, "no body and no wall uses it");
   for (const InterfaceDescription& one : scene.interfaces)
@@ -220,20 +232,28 @@ std::vector<UnusedSetting> unused_settings(const Scene& described, const Compone
       say("/interfaces/" + pointer_token(one.name()), one.a == one.b
                                                           ? "no two bodies or walls of " + one.a + " come into contact"
                                                           : one.a + " and " + one.b + " never come into contact");
+}
+
+void find_frames_of_each_step(const SceneDescription& scene, const World& world, const Say& say) {
   if (const auto& every = scene.output.frames.every_time; every && *every < world.dt())
     say("/output/frames/every_time",
         fmt::format("{:g} s is shorter than the time step, {:g} s at the start: each step writes a frame, {:.3g} per "
                     "simulated second",
                     *every, world.dt(), 1 / world.dt()));
-  const auto walls = world.walls();
-  Description others = values;
-  others.erase("walls");
-  const std::string elsewhere = others.dump();
+}
+
+void find_walls_out_of_reach(const SceneDescription& scene, const Kernel& kernel, Description values, const Say& say) {
+  const auto walls = kernel.world().walls();
+  values.erase("walls");
+  const std::string elsewhere = values.dump();
   for (std::size_t wall = 0; wall < walls.size(); ++wall)
     // Walls that bound the specimen, or are named by a probe or a condition, have a use wherever they are.
     if (const std::string& name = walls[wall].name;
         elsewhere.find('"' + name + '"') == elsewhere.npos && is_out_of_reach(scene, kernel, wall, name))
       say("/walls/" + name, "it is at rest outside the domain, out of reach of all bodies inside");
+}
+
+void find_probes_without_samples(const SceneDescription& scene, const Say& say) {
   for (const auto& [name, probe] : scene.probes)
     if (probe.cadence.never())
       say("/probes/" + name,
@@ -242,6 +262,32 @@ std::vector<UnusedSetting> unused_settings(const Scene& described, const Compone
       say("/probes/" + name + "/every_time",
           fmt::format("{:g} s is longer than its stages, {:g} s at most: it samples only at their start and end",
                       *probe.cadence.every_time, most));
+}
+
+}  // namespace
+
+std::vector<UnusedSetting> unused_settings(const Scene& described, const Components& components, const Kernel& kernel) {
+  const World& world = kernel.world();
+  const SceneDescription& scene = *described.description;
+  std::vector<UnusedSetting> unused;
+  const Say say = [&](const std::string& pointer, const std::string& why) { unused.push_back({pointer, why}); };
+  const Description values = resolved(scene);
+  const bool smooth = is_smooth(described);
+  const std::string still = why_none_rotates(described, world, smooth);
+
+  find_idle_engines(described, components, say);
+  if (!still.empty()) find_rotations_of_none(scene, components, still, say);
+  find_moments_of_nothing(described, values, still, say);
+  if (smooth && values.at("contacts").value("shear_damping", false))
+    say("/contacts/shear_damping", "without friction there is no shear force");
+  if (!is_random(values) && scene.seed != 1) say("/seed", "nothing is random: all bodies are given");
+  find_scaling_of_none(scene, world, say);
+  find_overlaps_of_present_bodies(scene, say);
+  find_limits_of_a_given_step(described, say);
+  find_materials_of_nothing(scene, say);
+  find_frames_of_each_step(scene, world, say);
+  find_walls_out_of_reach(scene, kernel, values, say);
+  find_probes_without_samples(scene, say);
   return unused;
 }
 
