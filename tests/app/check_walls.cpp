@@ -69,7 +69,7 @@ TEST(Descriptions, CheckWarnsOfWallsThatFaceAway) {
   };
   const auto floor = [](double height, const std::string& edges, const std::string& more = "") {
     return R"({"type": "rectangle", "material": "sand", "corner": [-0.01, -0.01, )" + std::to_string(height) + "], " +
-           edges + more + "}";
+           edges + R"(, "two_sided": false)" + more + "}";
   };
   const std::string up = R"("edge_a": [0.02, 0, 0], "edge_b": [0, 0.02, 0])",
                     down = R"("edge_a": [0, 0.02, 0], "edge_b": [0.02, 0, 0])",
@@ -79,7 +79,9 @@ TEST(Descriptions, CheckWarnsOfWallsThatFaceAway) {
   const auto none = testing::Not(HasSubstr("are behind it"));
   EXPECT_THAT(check({floor(-0.005, up)}), none);
   EXPECT_THAT(check({floor(-0.005, down)}), HasSubstr(warning + "exchange edge_a and edge_b"));
-  EXPECT_THAT(check({floor(-0.005, down, R"(, "two_sided": true)")}), none);
+  EXPECT_THAT(check({R"({"type": "rectangle", "material": "sand", "corner": [-0.01, -0.01, -0.005], )" + down + "}"}),
+              none)
+      << "it has two sides";
   EXPECT_THAT(check({floor(-0.005, down, R"(, "motion": {"spin": [1, 0, 0]})")}), none) << "it turns towards them";
   EXPECT_THAT(check({floor(-0.005, down), floor(-0.004, up)}), none) << "the back of a plate";
   const auto tube = [](const std::string& inside, double radius) {
