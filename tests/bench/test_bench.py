@@ -96,7 +96,7 @@ class Bench(unittest.TestCase):
     def test_rows_are_measured(self):
         out = self.place / 'rows.json'
         # A test with all probes takes too long.
-        names = ['threads', 'size', 'grading', 'drum', 'silo', 'clumps', 'memory', 'start', 'busy', 'walls', 'phases', 'growth']
+        names = ['threads', 'alone', 'alone_in_flow', 'size', 'grading', 'drum', 'silo', 'clumps', 'memory', 'start', 'busy', 'walls', 'phases', 'growth']
         if (GRIT.parent / 'bench_kernels').is_file():
             names += ['guards', 'bare']
         done = call(BENCH / 'rows', '--grit', GRIT, '--short', '--json', out, *names)

@@ -98,7 +98,7 @@ TEST(ResultsFolder, HoldsAWholeRun) {
   summary.wall_seconds = 2;
   summary.particle_steps_per_second = 40;
   summary.rebuilds = 3;
-  summary.phases = {{"contact forces", 1.5}};
+  summary.phases = {{"contact forces", 1.5, 1.25}};
   summary.probes = {{"packing", 4, 0.25}};
   results.finish(world, summary);
   run = json::parse(text_of(folder / "run/run.json"));
@@ -111,6 +111,7 @@ TEST(ResultsFolder, HoldsAWholeRun) {
   EXPECT_EQ(run.at("particle_steps_per_s"), 40);
   EXPECT_EQ(run.at("rebuilds"), 3);
   EXPECT_EQ(run.at("phases_s").at("contact forces"), 1.5);
+  EXPECT_EQ(run.at("parallel_s").at("contact forces"), 1.25);
   EXPECT_EQ(run.at("probes").at("packing"), Description({{"samples", 4}, {"seconds", 0.25}}));
 
   const std::vector<Row> grains = read_packing(folder / "run/packing.txt");

@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "contact/stopwatch.hpp"
+
 namespace grit {
 
 /// A few threads that sleep without work and never wait for a thread that has no chunk, so that another process on one
@@ -23,13 +25,20 @@ class Team {
   Team& operator=(const Team&) = delete;
 
   unsigned threads() const { return static_cast<unsigned>(workers_.size()) + 1; }
+  /// Computing time of passes that several threads can share, whether or not there are several [s].
+  double parallel_seconds() const { return parallel_seconds_; }
 
   /// Calls work(chunk) for chunk = 0 … chunks − 1, from any thread, and returns when all are done. One single thread
   /// takes them in order; several take fewer than 2²⁰ and throw Error for more. If `work` throws, one of its exceptions
   /// is rethrown at the end. Not reentrant.
   template <class Work>
   void each(std::size_t chunks, Work&& work) {
-    if (workers_.empty() || chunks < 2) {
+    if (chunks < 2) {
+      for (std::size_t i = 0; i < chunks; ++i) work(i);
+      return;
+    }
+    const Stopwatch watch(parallel_seconds_);
+    if (workers_.empty()) {
       for (std::size_t i = 0; i < chunks; ++i) work(i);
       return;
     }
@@ -60,6 +69,7 @@ class Team {
   void* context_ = nullptr;
   std::atomic<bool> failed_{false};
   std::exception_ptr failure_;
+  double parallel_seconds_ = 0;
   std::vector<std::thread> workers_;
 };
 

@@ -158,7 +158,7 @@ double EnergyBalance::power_of_cell(const Vec3& growth, const Vec3& tilt_growth)
 
 void EnergyBalance::find_crossing() {
   if (!state_.bodies.energies() || !state_.deforms()) return;
-  const Stopwatch watch(passes_.time_of(StepPhase::contacts));
+  const PhaseWatch watch = passes_.watch(StepPhase::contacts);
   const Bodies& bodies = state_.bodies;
   passes_.team().each(passes_.chunks().size(), [&](std::size_t chunk) {
     Mat3& crossing = passes_.chunks()[chunk].crossing = Mat3::Zero();
@@ -198,7 +198,7 @@ void EnergyBalance::before_motion(const MotionStep& step) {
   engines_in_step_ = cell_in_step_ = 0;
   if (!step.energies) return;
   if (state_.settings.engines_do_work()) {
-    const Stopwatch watch(passes_.time_of(StepPhase::motion));
+    const PhaseWatch watch = passes_.watch(StepPhase::motion);
     engines_in_step_ = half_before * power_of_engines();
   }
   if (step.flows()) cell_in_step_ = half_before * power_of_cell();
@@ -207,7 +207,7 @@ void EnergyBalance::before_motion(const MotionStep& step) {
 void EnergyBalance::after_motion(const MotionStep& step) {
   const double half_after = 0.5 * step.drift;
   if (step.energies && state_.settings.engines_do_work()) {
-    const Stopwatch watch(passes_.time_of(StepPhase::motion));
+    const PhaseWatch watch = passes_.watch(StepPhase::motion);
     engines_in_step_ += half_after * power_of_engines();
   }
   if (step.energies && step.flows()) cell_in_step_ += half_after * power_of_cell(step.period_growth, step.tilt_growth);

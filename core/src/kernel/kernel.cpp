@@ -339,7 +339,7 @@ void Kernel::serialize(Archive& archive) {
   part("energy", 1, state_.overlap, balance_, guard_);
   part("time step", 1, stepper_);
   part("streams", 1, inflow_);
-  archive.part("run time", 1);
+  archive.part("run time", 2);
   passes_.serialize(archive, state_.bodies.count());
   for (const auto& [name, engine] : state_.settings.engines)
     serialize_component("engine \"" + name + '"', *engine, archive);

@@ -11,6 +11,7 @@ namespace grit {
 struct PhaseTime {
   std::string name;
   double seconds = 0;
+  double parallel = 0;  ///< part of it that several threads can share, whether or not there are several [s]
 };
 
 /// Stored and computed quantities. All others are omitted, because no component requested them.

@@ -12,13 +12,14 @@ std::vector<PhaseTime> Passes::phases() const {
   const double all = std::accumulate(timed.begin(), timed.end(), 0.0);
   auto phases = phases_;
   for (std::size_t phase = 0; phase < step_phases && all > 0; ++phase)
-    phases[phase].seconds += seconds_ * timed[phase] / all;
+    phases[phase].seconds += passes_.seconds * timed[phase] / all,
+        phases[phase].parallel += passes_.parallel * timed[phase] / all;
   return phases;
 }
 
 void Passes::serialize(Archive& archive, std::size_t bodies) {
-  archive(seconds_);
-  for (PhaseTime& phase : phases_) archive(phase.seconds);
+  archive(passes_.seconds, passes_.parallel);
+  for (PhaseTime& phase : phases_) archive(phase.seconds, phase.parallel);
   resize(bodies);
   for (ChunkResult& chunk : chunks_) archive(chunk.seconds);
 }

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "contact/chunks.hpp"
+#include "contact/stopwatch.hpp"
 #include "contact/team.hpp"
 #include "grit/contact/batch.hpp"
 #include "kernel/model.hpp"
-#include "kernel/stopwatch.hpp"
 #include "motion/motion.hpp"
 
 namespace grit {
@@ -30,6 +30,22 @@ struct alignas(64) ChunkResult {
   double& time_of(StepPhase phase) { return seconds[static_cast<std::size_t>(phase)]; }
 };
 
+/// Adds its lifetime to a phase, and to its parallel part what passes take.
+class PhaseWatch {
+ public:
+  PhaseWatch(PhaseTime& phase, const Team& team)
+      : phase_(phase), team_(team), before_(team.parallel_seconds()), watch_(phase.seconds) {}
+  ~PhaseWatch() { phase_.parallel += team_.parallel_seconds() - before_; }
+  PhaseWatch(const PhaseWatch&) = delete;
+  PhaseWatch& operator=(const PhaseWatch&) = delete;
+
+ private:
+  PhaseTime& phase_;
+  const Team& team_;
+  double before_;
+  Stopwatch watch_;
+};
+
 class Passes {
  public:
   explicit Passes(unsigned threads);
@@ -43,7 +59,7 @@ class Passes {
   /// Shares work(chunk, laps) among the threads; times one chunk in eight.
   template <class Work>
   void each(std::uint64_t step, Work work) {
-    const Stopwatch watch(seconds_);
+    const PhaseWatch watch(passes_, team_);
     team_.each(chunks_.size(), [&](std::size_t chunk) {
       Laps laps((chunk + step) % timed_every == 0);
       work(chunk, laps);
@@ -56,9 +72,9 @@ class Passes {
     team_.each(found.size(), [&](std::size_t chunk) { found[chunk] = part(chunk); });
     return std::accumulate(found.begin(), found.end(), decltype(part(std::size_t{0})){});
   }
-  /// Time of a phase outside passes, to add to [s].
-  double& time_of(StepPhase phase) { return phases_[static_cast<std::size_t>(phase)].seconds; }
-  /// Times of all phases; that of passes is divided in proportion to the timed chunks.
+  /// Measures a phase outside each().
+  PhaseWatch watch(StepPhase phase) { return {phases_[static_cast<std::size_t>(phase)], team_}; }
+  /// Times of all phases; that of each() is divided in proportion to the timed chunks.
   std::vector<PhaseTime> phases() const;
 
   void serialize(Archive& archive, std::size_t bodies);
@@ -70,7 +86,7 @@ class Passes {
   Team team_;
   std::vector<ChunkResult> chunks_;
   std::vector<PhaseTime> phases_;
-  double seconds_ = 0;  // of all passes
+  PhaseTime passes_;  // of all calls of each()
 };
 
 /// First body of a chunk, and one past its last.

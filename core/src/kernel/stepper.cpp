@@ -113,7 +113,7 @@ bool Stepper::prepare() {
   state_.cell.update_images(state_.time.previous_dt);
   update_surfaces();
   {
-    const Stopwatch watch(passes_.time_of(StepPhase::search));
+    const PhaseWatch watch = passes_.watch(StepPhase::search);
     if (state_.lists.due(state_.bodies, state_.cell)) {
       rebuild();
     } else {
@@ -242,7 +242,7 @@ void Stepper::grow() {
   check_growth(state_, distance);
   const double kinetic_before = balance_.begun() ? balance_.kinetic() : 0;
   {
-    const Stopwatch watch(passes_.time_of(StepPhase::motion));
+    const PhaseWatch watch = passes_.watch(StepPhase::motion);
     passes_.team().each(passes_.chunks().size(), [&](std::size_t chunk) { grow_bodies(chunk, state_.bodies, factor); });
     grow_clumps(state_.bodies, factor);
     state_.wall_contacts.grow(state_.bodies, factor);
@@ -265,7 +265,7 @@ void Stepper::move_clumps_of_chunks(const MotionStep& step) {
 }
 
 void Stepper::drive_cell() {
-  const Stopwatch watch(passes_.time_of(StepPhase::contacts));
+  const PhaseWatch watch = passes_.watch(StepPhase::contacts);
   const CellRates rates = cell_servo_.rates(state_, passes_);
   const double kinetic_before = balance_.is_kept() ? balance_.kinetic() : 0;
   change_rates(state_, rates);
@@ -332,7 +332,7 @@ void Stepper::step_on() {
   for (std::size_t chunk = 0; chunk < passes_.chunks().size(); ++chunk)
     if (!passes_.chunks()[chunk].moved) late_.push_back(chunk);
   if (!late_.empty()) {
-    const Stopwatch watch(passes_.time_of(StepPhase::motion));
+    const PhaseWatch watch = passes_.watch(StepPhase::motion);
     passes_.team().each(late_.size(), [&](std::size_t k) { gather_and_move(late_[k], state_.sum.data()); });
   }
   and_show_forces([this] { take_loads(), end_step(); });

@@ -77,6 +77,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"rebuilds", nullptr},
            {"model", nullptr},
            {"phases_s", Description::object()},
+           {"parallel_s", Description::object()},
            {"probes", Description::object()},
            {"stages", Description::array()},
            {"plugins", Description::array()},
@@ -158,7 +159,10 @@ void RunJson::finish(const World& world, const RunSummary& summary) {
                     {"gravity", model.gravity},
                     {"local_damping", model.local_damping},
                     {"bytes", model.bytes}};
-  for (const auto& phase : summary.phases) json_["phases_s"][phase.name] = phase.seconds;
+  for (const PhaseTime& phase : summary.phases) {
+    json_["phases_s"][phase.name] = phase.seconds;
+    json_["parallel_s"][phase.name] = phase.parallel;
+  }
   for (const auto& [name, samples, seconds] : summary.probes)
     json_["probes"][name] = {{"samples", samples}, {"seconds", seconds}};
   json_["host"]["load_average_at_end"] = load_average();

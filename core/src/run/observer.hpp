@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "contact/stopwatch.hpp"
 #include "description/placed_error.hpp"
 #include "grit/toolkit/limited_fields.hpp"
 #include "kernel/group_view.hpp"
-#include "kernel/stopwatch.hpp"
 #include "plugins/component_archive.hpp"
 #include "run/recorder.hpp"
 #include "run/schedule.hpp"

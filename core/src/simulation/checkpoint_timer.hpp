@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "grit/checkpoint.hpp"
-#include "kernel/stopwatch.hpp"
+#include "contact/stopwatch.hpp"
 
 namespace grit {
 

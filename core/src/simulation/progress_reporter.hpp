@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "grit/simulation.hpp"
-#include "kernel/stopwatch.hpp"
+#include "contact/stopwatch.hpp"
 #include "simulation/stage_runner.hpp"
 
 namespace grit {

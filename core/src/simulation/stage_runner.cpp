@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/stopwatch.hpp"
 #include "description/placed_error.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
-#include "kernel/stopwatch.hpp"
 #include "run/falling.hpp"
 #include "simulation/expected_stages.hpp"
 #include "storage/parsed_json.hpp"
@@ -384,6 +384,9 @@ void StageRunner::fill(RunSummary& summary) const {
   summary.threads = kernel_.threads();
   summary.model = kernel_.model();
   summary.phases = kernel_.phases();
+  double in_phases = 0;
+  for (const PhaseTime& phase : summary.phases) in_phases += phase.seconds;
+  summary.phases.push_back({"other", std::max(0.0, stepping_ - in_phases)});
   summary.phases.insert(summary.phases.end(), phases_.begin(), phases_.end());
   for (const Observer& observer : observers_) summary.probes.push_back(observer.cost());
 }
