@@ -76,7 +76,8 @@ class Bare {
     for (const test::Grain& g : grains(about)) bodies.add(g.position, g.radius, 1, 1, 0, g.velocity, g.spin);
     bodies.finish({});
     const Vec3 open = Vec3::Constant(std::numeric_limits<double>::infinity());
-    bodies.reorder(spatial_order(bodies, {-open, open}));
+    Team team(1);
+    bodies.reorder(spatial_order(bodies, {-open, open}, team), team);
     const auto four = [](const Row& r, double w) { return Four{r.x, r.y, r.z, w}; };
     std::vector<double> mass;
     for (std::size_t i = 0; i < bodies.count(); ++i) {

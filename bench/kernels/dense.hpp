@@ -46,7 +46,7 @@ class Dense {
     bodies_.finish({});
     const Vec3 open = Vec3::Constant(std::numeric_limits<double>::infinity());
     cell_ = {-open, open};
-    bodies_.reorder(spatial_order(bodies_, cell_));
+    bodies_.reorder(spatial_order(bodies_, cell_, team_), team_);
     sum_.assign(bodies_.count() + 1, {});
     search();
     contacts();
@@ -58,7 +58,7 @@ class Dense {
   /// Neighbour search only.
   void find() {
     skins_.reset(std::vector(chunks_of(bodies_.count()), 0.03 * spacing), 0, 0);
-    search_.build(bodies_, cell_, skins_);
+    search_.build(bodies_, cell_, skins_, team_);
   }
   /// Builds the contact table from the pairs found.
   void rebuild() { pairs_.rebuild(bodies_, search_, false, law_->state(), {}, team_); }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "bodies/random.hpp"
 #include "two_spheres.hpp"
 
 namespace grit::test::boundaries_tests {
@@ -11,10 +12,12 @@ namespace {
 void must_not_escape(std::size_t, int, bool) { FAIL(); }
 
 TEST(Boundaries, BodiesReEnterAtTheOtherSideWithTheFlowThere) {
+  Team team(1);
   State state = two_spheres(0.004, box({true, false, false}));
   state.bodies.position[1].x = 0.012;
   set_velocity(state, 1, {1, 0, 0});
-  const Wrapped wrapped = wrap(state.bodies, state.cell.cell(), Vec3(0.5, 0, 0).asDiagonal(), {}, must_not_escape);
+  const Wrapped wrapped =
+      wrap(state.bodies, state.cell.cell(), Vec3(0.5, 0, 0).asDiagonal(), {}, must_not_escape, team);
   EXPECT_DOUBLE_EQ(state.bodies.position[1].x, -0.008);
   EXPECT_DOUBLE_EQ(state.bodies.velocity[1].x, 0.5) << "the opposite side of the cell moves faster by 0.5 m/s";
   EXPECT_NEAR(wrapped.energy_gained, 0.5 * sphere_mass() * (0.25 - 1), 1e-12 * sphere_mass());
@@ -23,13 +26,15 @@ TEST(Boundaries, BodiesReEnterAtTheOtherSideWithTheFlowThere) {
 }
 
 TEST(Boundaries, BodiesReEnterASkewedCellAtTheirImage) {
+  Team team(1);
   State state = two_spheres(0.004, box({true, true, true}));
   state.cell.set_rates(Vec3::Zero(), {0, 50, 0}, 0);
   state.cell.advance(1e-3);  // the image across z moves by 50 1/s · 20 mm · 1 ms = 1 mm along x
   EXPECT_NEAR(state.cell.cell().tilt[1], 1e-3, 1e-18);
   state.bodies.position[1].x = -0.0095, state.bodies.position[1].z = 0.0105;
   set_velocity(state, 1, {2, 0, 3});
-  const Wrapped wrapped = wrap(state.bodies, state.cell.cell(), state.cell.image_velocities(1e-3), {}, must_not_escape);
+  const Wrapped wrapped =
+      wrap(state.bodies, state.cell.cell(), state.cell.image_velocities(1e-3), {}, must_not_escape, team);
   EXPECT_NEAR(state.bodies.position[1].z, -0.0095, 1e-15);
   EXPECT_NEAR(state.bodies.position[1].x, 0.0095, 1e-15) << "1 mm back, and then across x";
   EXPECT_NEAR(state.bodies.velocity[1].x, 2 - 50 * 0.02, 1e-12) << "shear rate times height";
@@ -38,18 +43,68 @@ TEST(Boundaries, BodiesReEnterASkewedCellAtTheirImage) {
 }
 
 TEST(Boundaries, BodiesLeaveThroughOpenSidesAlone) {
+  Team team(1);
   State state = two_spheres(0.004);
   state.bodies.position[0].z = -0.011;
-  EXPECT_EQ(wrap(state.bodies, state.cell.cell(), Mat3::Zero(), {"-z"}, must_not_escape).leaves,
+  EXPECT_EQ(wrap(state.bodies, state.cell.cell(), Mat3::Zero(), {"-z"}, must_not_escape, team).leaves,
             (std::vector{true, false}));
   int escaped = 0;
-  wrap(state.bodies, state.cell.cell(), Mat3::Zero(), {"+z", "-x"}, [&](std::size_t body, int axis, bool high) {
-    EXPECT_EQ(body, 0u);
-    EXPECT_EQ(axis, 2);
-    EXPECT_FALSE(high);
-    ++escaped;
-  });
+  wrap(
+      state.bodies, state.cell.cell(), Mat3::Zero(), {"+z", "-x"},
+      [&](std::size_t body, int axis, bool high) {
+        EXPECT_EQ(body, 0u);
+        EXPECT_EQ(axis, 2);
+        EXPECT_FALSE(high);
+        ++escaped;
+      },
+      team);
   EXPECT_EQ(escaped, 1);
+}
+
+/// Many bodies in one chunk or several, some of which have left the cell by up to a period along x, and their energy.
+struct Scattered {
+  Bodies bodies;
+  Wrapped wrapped;
+  std::vector<std::size_t> escaped;
+};
+Scattered wrapped_by(unsigned threads, double below_the_floor) {
+  Scattered all;
+  Random random(4);
+  for (std::size_t i = 0; i < 3 * chunk_bodies + 5; ++i) {
+    const Vec3 x(0.06 * (random.uniform() - 0.5), 0.02 * (random.uniform() - 0.5), 0.02 * (random.uniform() - 0.5));
+    all.bodies.add(x, 1e-4, 1e-6 + 1e-8 * static_cast<double>(i), 1e-14, 0, Vec3(2 * (random.uniform() - 0.5), 0, 0),
+                   Vec3::Zero());
+  }
+  for (const std::size_t i : {2 * chunk_bodies + 1, chunk_bodies - 1}) all.bodies.position[i].z -= below_the_floor;
+  all.bodies.finish({});
+  Team team(threads);
+  const Cell cell{Vec3::Constant(-0.01), Vec3::Constant(0.01), {true, false, false}};
+  all.wrapped = wrap(
+      all.bodies, cell, Vec3(0.1, 0, 0).asDiagonal(), {},
+      [&](std::size_t body, int, bool) { all.escaped.push_back(body); }, team);
+  return all;
+}
+
+TEST(Boundaries, BodiesReEnterAlikeByAnyNumberOfThreads) {
+  const Scattered one = wrapped_by(1, 0), three = wrapped_by(3, 0);
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < one.bodies.count(); ++i) {
+    EXPECT_EQ(one.bodies.position[i].x, three.bodies.position[i].x) << i;
+    EXPECT_EQ(one.bodies.velocity[i].x, three.bodies.velocity[i].x) << i;
+    outside += std::abs(three.bodies.position[i].x) > 0.01 ? 1 : 0;
+  }
+  EXPECT_EQ(outside, 0u);
+  EXPECT_NE(one.wrapped.energy_gained, 0);
+  EXPECT_EQ(one.wrapped.energy_gained, three.wrapped.energy_gained);
+  EXPECT_TRUE(three.escaped.empty());
+}
+
+TEST(Boundaries, TheFirstBodyThatEscapesIsReportedFirst) {
+  for (const unsigned threads : {1u, 3u}) {
+    const Scattered all = wrapped_by(threads, 0.03);
+    ASSERT_FALSE(all.escaped.empty());
+    EXPECT_EQ(all.escaped.front(), chunk_bodies - 1) << threads;
+  }
 }
 
 TEST(Boundaries, LeavingBodiesTakeTheirEnergyAlong) {

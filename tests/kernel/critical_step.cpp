@@ -46,7 +46,7 @@ class CriticalStepAtWalls : public testing::Test {
   void remove_floor() {
     state_.surfaces[0].pose.shift.z() = -1;
     state_.wall_contacts.rebuild(state_.bodies, state_.group, state_.surfaces, state_.lists.skins(),
-                                 state_.settings.fields, {});
+                                 state_.settings.fields, {}, passes_.team());
   }
   void lighten(std::size_t body) { state_.bodies.velocity[body].w *= 4; }
 

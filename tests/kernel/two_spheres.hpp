@@ -77,7 +77,7 @@ inline void search(State& state, Passes& passes, std::optional<std::span<const s
   state.pairs.rebuild(state.bodies, state.lists.search(), state.cell.periodic(), state.settings.fields, order,
                       passes.team());
   state.wall_contacts.rebuild(state.bodies, state.group, state.surfaces, state.lists.skins(), state.settings.fields,
-                              order);
+                              order, passes.team());
 }
 
 /// Evaluates the contacts of the only chunk.

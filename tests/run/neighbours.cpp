@@ -56,9 +56,10 @@ TEST(NeighbourSearch, FindsWhatBruteForceFinds) {
       for (int k = 0; k < 3; ++k) cell.periodic[k] = (axes >> k & 1) != 0;
       const Bodies bodies = scattered(700, low, high, 0.1, random);
       NeighbourSearch search;
+      Team team(2);
       Skins skins;
       skins.reset(skin, 0, 0);
-      search.build(bodies, cell, skins);
+      search.build(bodies, cell, skins, team);
       std::vector<Candidate> found;
       for (std::uint32_t i = 0; i < bodies.count(); ++i) search.neighbours(bodies, i, found);
       std::set<Pair> pairs;
@@ -92,9 +93,10 @@ TEST(NeighbourSearch, FindsWhatBruteForceFindsInASkewedCell) {
         cell.tilt = share.cwiseProduct(Vec3(sides.x(), sides.x(), sides.y()));
         const Bodies bodies = scattered(700, low, high, smallest, random);
         NeighbourSearch search;
+        Team team(2);
         Skins skins;
         skins.reset(skin, 0, 0);
-        search.build(bodies, cell, skins);
+        search.build(bodies, cell, skins, team);
         std::vector<Candidate> found;
         for (std::uint32_t i = 0; i < bodies.count(); ++i) search.neighbours(bodies, i, found);
         std::set<Pair> pairs;
@@ -105,6 +107,27 @@ TEST(NeighbourSearch, FindsWhatBruteForceFindsInASkewedCell) {
         EXPECT_EQ(pairs, brute_force({bodies.position.data(), bodies.count()}, cell, skins)) << share.transpose();
       }
   EXPECT_GT(*images.rbegin(), straight_images) << "two periods along x, too";
+}
+
+TEST(SpatialOrder, FollowsTheCurveForAnyNumberOfThreads) {
+  Random random(13);
+  for (const Vec3& sides : {Vec3(4, 5, 6), Vec3(40, 0.5, 0.5), Vec3(1e-3, 1e-3, 1e-3)}) {
+    const Vec3 low(-1, 2, 0.5);
+    const Bodies bodies = scattered(3 * chunk_bodies + 9, low, low + sides, 0.1, random);
+    const double infinite = std::numeric_limits<double>::infinity();
+    const Cell open{Vec3::Constant(-infinite), Vec3::Constant(infinite)};
+    Team alone(1), three(3);
+    const std::vector<std::uint32_t> order = spatial_order(bodies, open, alone);
+    EXPECT_EQ(order, spatial_order(bodies, open, three)) << sides.transpose();
+    std::vector<std::uint32_t> all = order;
+    std::ranges::sort(all);
+    for (std::uint32_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], i);
+    // Neighbours on the curve are near each other: on average within some cells, far less than across the box.
+    double steps = 0;
+    for (std::size_t i = 1; i < order.size(); ++i)
+      steps += (xyz(bodies.position[order[i]]) - xyz(bodies.position[order[i - 1]])).norm();
+    EXPECT_LT(steps / static_cast<double>(order.size()), 0.25 * sides.norm());
+  }
 }
 
 TEST(NeighbourSearch, NumbersImagesByTheirShift) {

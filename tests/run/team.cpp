@@ -1,4 +1,4 @@
-#include "contact/team.hpp"
+#include "threads/team.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

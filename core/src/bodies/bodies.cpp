@@ -16,10 +16,10 @@ constexpr std::size_t most_bodies = std::numeric_limits<std::uint32_t>::max() - 
 
 /// Values of `count` bodies and of the padding after them.
 template <class Array>
-void permute(Array& values, std::span<const std::uint32_t> order, std::size_t count) {
+void permute(Array& values, std::span<const std::uint32_t> order, std::size_t count, Team& team) {
   if (values.empty()) return;
   Array moved(order.size() + values.size() - count);
-  for (std::size_t i = 0; i < order.size(); ++i) moved[i] = values[order[i]];
+  team.each_body(order.size(), [&](std::size_t i) { moved[i] = values[order[i]]; });
   for (std::size_t i = order.size(); i < moved.size(); ++i) moved[i] = values[count + i - order.size()];
   values.swap(moved);
 }
@@ -175,13 +175,12 @@ void Bodies::append(const Bodies& others) {
   ids_given += others.ids_given, clump_ids_given += others.clump_ids_given;
 }
 
-void Bodies::reorder(std::span<const std::uint32_t> order) {
+void Bodies::reorder(std::span<const std::uint32_t> order, Team& team) {
   const std::size_t before = count();
-  permute(position, order, before), permute(velocity, order, before), permute(spin, order, before);
-  permute(id, order, before), permute(material, order, before);
-  permute(rotation, order, before), permute(origin, order, before);
+  const auto each = [&](auto&... arrays) { (permute(arrays, order, before, team), ...); };
+  each(position, velocity, spin, id, material, rotation, origin);
   if (clumps.none()) return;
-  permute(clumps.of_body, order, before), permute(clumps.volume_fraction, order, before);
+  each(clumps.of_body, clumps.volume_fraction);
   const std::vector<std::uint32_t> now = present_indices(order, before);
   std::vector<Clump> kept;
   std::vector<std::uint32_t> spheres;

@@ -11,6 +11,7 @@
 #include "grit/archive.hpp"
 #include "grit/vec.hpp"
 #include "grit/world.hpp"
+#include "threads/team.hpp"
 
 namespace grit {
 
@@ -54,7 +55,7 @@ struct Bodies {
   /// given here.
   void append(const Bodies& others);
   /// Moves body order[i] to index i. Bodies that are not in `order` are removed.
-  void reorder(std::span<const std::uint32_t> order);
+  void reorder(std::span<const std::uint32_t> order, Team& team);
   /// Everything except `state`, which follows from the scene.
   void serialize(Archive& archive) {
     archive(position, velocity, spin, id, material, rotation, origin, clumps, groups, ids_given, clump_ids_given);

@@ -12,8 +12,8 @@
 #include "bodies/bodies.hpp"
 #include "contact/search.hpp"
 #include "contact/skins.hpp"
-#include "contact/team.hpp"
 #include "grit/contact/contact_law.hpp"
+#include "threads/team.hpp"
 
 namespace grit {
 

@@ -26,20 +26,31 @@ float rounded_down(double gap) {
   return std::max(near > gap ? std::nextafter(near, 0.0f) : near, std::numeric_limits<float>::min());
 }
 
-struct Box {
-  Vec3 low, high;
+struct Extent {
+  double smallest = std::numeric_limits<double>::max(), largest = 0;  // radii
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+
+  void add(const Extent& other) {
+    smallest = std::min(smallest, other.smallest), largest = std::max(largest, other.largest);
+    low = low.cwiseMin(other.low), high = high.cwiseMax(other.high);
+  }
 };
 
-/// The periodic cell along periodic axes, the extent of the bodies along the others.
-Box extent(const Bodies& bodies, const Cell& cell) {
-  Box box{Vec3::Constant(std::numeric_limits<double>::max()), Vec3::Constant(std::numeric_limits<double>::lowest())};
-  for (std::size_t i = 0; i < bodies.count(); ++i) {
-    const Vec3 x = xyz(bodies.position[i]);
-    box.low = box.low.cwiseMin(x), box.high = box.high.cwiseMax(x);
-  }
+/// Radii of the bodies, the periodic cell along periodic axes, and the extent of the centres along the others.
+Extent extent(const Bodies& bodies, const Cell& cell, Team& team) {
+  std::vector<Extent> parts(chunks_of(bodies.count()));
+  team.each(parts.size(), [&](std::size_t chunk) {
+    const ChunkRange range(chunk, bodies.count());
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const Row& body = bodies.position[i];
+      parts[chunk].add({body.w, body.w, xyz(body), xyz(body)});
+    }
+  });
+  Extent all;
+  for (const Extent& part : parts) all.add(part);
   for (int k = 0; k < 3; ++k)
-    if (cell.periodic[as_index(k)]) box.low[k] = cell.low[k], box.high[k] = cell.high[k];
-  return box;
+    if (cell.periodic[as_index(k)]) all.low[k] = cell.low[k], all.high[k] = cell.high[k];
+  return all;
 }
 
 /// Cells of at least `width`, but not many more than bodies, even if a body is far away.
@@ -63,28 +74,43 @@ int periods_beyond(int place, int cells) { return place >= 0 ? place / cells : -
 
 }  // namespace
 
-std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell) {
-  std::vector<std::uint32_t> order(bodies.count());
-  std::iota(order.begin(), order.end(), 0u);
+std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell, Team& team) {
+  const std::size_t count = bodies.count();
+  std::vector<std::uint32_t> order(count);
   if (order.empty()) return order;
-  double largest = 0;
-  for (std::size_t i = 0; i < bodies.count(); ++i) largest = std::max(largest, bodies.position[i].w);
-  const Box box = extent(bodies, cell);
+  const Extent box = extent(bodies, cell, team);
   const Vec3 length = box.high - box.low;
-  const auto size = cells(length, std::max(2 * largest, 1e-300), bodies.count());
-  std::vector<std::uint64_t> key(bodies.count());
-  for (std::size_t i = 0; i < bodies.count(); ++i) {
-    const Vec3 x = xyz(bodies.position[i]);
-    std::uint64_t morton = 0;
+  const auto size = cells(length, std::max(2 * box.largest, 1e-300), count);
+  const auto morton = [&](const Vec3& share) {  // of the box
+    std::uint64_t place = 0;
     for (int k = 0; k < 3; ++k) {
-      const double place = length[k] > 0 ? (x[k] - box.low[k]) / length[k] * size[as_index(k)] : 0;
-      morton |= spread(static_cast<std::uint64_t>(std::clamp(place, 0.0, size[as_index(k)] - 1.0))) << k;
+      const double cells_before = share[k] * size[as_index(k)];
+      place |= spread(static_cast<std::uint64_t>(std::clamp(cells_before, 0.0, size[as_index(k)] - 1.0))) << k;
     }
-    key[i] = morton;
-  }
+    return place;
+  };
+  std::vector<std::uint64_t> key(count);
+  team.each_body(count, [&](std::size_t i) {
+    const Vec3 x = xyz(bodies.position[i]);
+    Vec3 share = Vec3::Zero();
+    for (int k = 0; k < 3; ++k)
+      if (length[k] > 0) share[k] = (x[k] - box.low[k]) / length[k];
+    key[i] = morton(share);
+  });
+  // Stretches of the curve, about as many as chunks, each of which one thread sorts.
+  const auto bits = static_cast<int>(std::bit_width(morton(Vec3::Ones())));
+  const int shift = std::max(0, bits - static_cast<int>(std::bit_width(chunks_of(count))));
+  std::vector<std::uint32_t> start((std::size_t{1} << (bits - shift)) + 1, 0);
+  for (const std::uint64_t one : key) ++start[(one >> shift) + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+  for (std::size_t i = 0; i < count; ++i) order[next[key[i] >> shift]++] = static_cast<std::uint32_t>(i);
   // Ids break ties, so that the order depends on positions only and not on the history.
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return key[a] != key[b] ? key[a] < key[b] : bodies.id[a] < bodies.id[b];
+  team.each(next.size(), [&](std::size_t stretch) {
+    std::sort(order.begin() + start[stretch], order.begin() + start[stretch + 1],
+              [&](std::uint32_t a, std::uint32_t b) {
+                return key[a] != key[b] ? key[a] < key[b] : bodies.id[a] < bodies.id[b];
+              });
   });
   return order;
 }
@@ -94,16 +120,15 @@ int NeighbourSearch::Grid::index(int axis, double coordinate) const {
   return static_cast<int>(std::floor(std::clamp(cell, -1e9, 1e9)));
 }
 
-void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins& skins) {
+void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins& skins, Team& team) {
   cell_ = cell, skins_ = skins;
   any_periodic_ = cell.periodic[0] || cell.periodic[1] || cell.periodic[2];
   if (bodies.count() == 0) return grids_.clear();
-  double smallest = std::numeric_limits<double>::max(), largest = 0, thinnest = skins.largest();
+  const Extent box = extent(bodies, cell, team);
+  const double smallest = box.smallest, largest = box.largest;
+  double thinnest = skins.largest();
   for (std::size_t chunk = 0; chunk < chunks_of(bodies.count()); ++chunk)
     thinnest = std::min(thinnest, skins.of_chunk(chunk));
-  for (std::size_t i = 0; i < bodies.count(); ++i) {
-    smallest = std::min(smallest, bodies.position[i].w), largest = std::max(largest, bodies.position[i].w);
-  }
   for (int k = 0; k < 3; ++k) {
     period_[k] = cell.periodic[as_index(k)] ? cell.high[k] - cell.low[k] : 0;
     per_period_[k] = cell.periodic[as_index(k)] ? 1 / period_[k] : 0;
@@ -127,8 +152,8 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
     grids_[as_index(c)].largest_radius = std::max(grids_[as_index(c)].largest_radius, radius);
     grids_[as_index(c)].largest_reach = std::max(grids_[as_index(c)].largest_reach, radius + skins.of_body(i));
   }
-  const Box box = extent(bodies, cell);
   const Vec3 length = box.high - box.low;
+  std::vector<std::size_t> cell_of(bodies.count());
   for (int c = 0; c < classes; ++c) {
     Grid& grid = grids_[as_index(c)];
     const std::vector<std::uint32_t>& members = grid.members;
@@ -136,29 +161,31 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
     grid.size = cells(length, std::max(width, 1e-300), members.size());
     grid.origin = box.low;
     for (int k = 0; k < 3; ++k) grid.per_length[k] = length[k] > 0 ? grid.size[as_index(k)] / length[k] : 0;
-    const auto cell_of = [&](std::uint32_t i) {
-      const Row& x = bodies.position[i];
+    team.each_body(members.size(), [&](std::size_t m) {
+      const Row& x = bodies.position[members[m]];
       const auto place = [&](int k, double value) {
         return as_index(std::clamp(grid.index(k, value), 0, grid.size[as_index(k)] - 1));
       };
-      return (place(2, x.z) * as_index(grid.size[1]) + place(1, x.y)) * as_index(grid.size[0]) + place(0, x.x);
-    };
+      cell_of[m] = (place(2, x.z) * as_index(grid.size[1]) + place(1, x.y)) * as_index(grid.size[0]) + place(0, x.x);
+    });
     grid.start.assign(as_index(grid.size[0]) * as_index(grid.size[1]) * as_index(grid.size[2]) + 1, 0);
-    for (const auto i : members) ++grid.start[cell_of(i) + 1];
+    for (std::size_t m = 0; m < members.size(); ++m) ++grid.start[cell_of[m] + 1];
     std::partial_sum(grid.start.begin(), grid.start.end(), grid.start.begin());
     grid.body.resize(members.size());
     grid.next = grid.start;
-    for (const auto i : members) grid.body[grid.next[cell_of(i)]++] = i;
-    grid.place(bodies, skins);
+    for (std::size_t m = 0; m < members.size(); ++m) grid.body[grid.next[cell_of[m]]++] = members[m];
+    grid.place(bodies, skins, team);
   }
 }
 
-void NeighbourSearch::Grid::place(const Bodies& bodies, const Skins& skins) {
-  for (auto* array : {&x, &y, &z, &reach}) array->assign(body.size() + lane_width<Lane>, 0);
-  for (std::size_t n = 0; n < body.size(); ++n) {
+void NeighbourSearch::Grid::place(const Bodies& bodies, const Skins& skins, Team& team) {
+  for (auto* array : {&x, &y, &z, &reach}) array->resize(body.size() + lane_width<Lane>);
+  team.each_body(body.size(), [&](std::size_t n) {
     const Row& one = bodies.position[body[n]];
     x[n] = one.x, y[n] = one.y, z[n] = one.z, reach[n] = one.w + skins.of_body(body[n]);
-  }
+  });
+  for (auto* array : {&x, &y, &z, &reach})
+    std::fill(array->end() - static_cast<std::ptrdiff_t>(lane_width<Lane>), array->end(), 0.0);
 }
 
 template <class Use>

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "contact/chunks.hpp"
 #include "grit/archive.hpp"
+#include "threads/chunks.hpp"
 
 namespace grit {
 

@@ -64,7 +64,7 @@ void straighten(WallContact& contact, std::span<const WallSurface> walls) {
 
 void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> group,
                            std::span<const WallSurface> walls, const Skins& skins, std::span<const StateField> fields,
-                           std::optional<std::span<const std::uint32_t>> order) {
+                           std::optional<std::span<const std::uint32_t>> order, Team& team) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
   // Contact histories follow their bodies into other chunks.
@@ -94,7 +94,7 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> 
   }
 
   chunks_.resize(chunks_of(count));
-  for (std::size_t c = 0; c < chunks_.size(); ++c) find_candidates(c, bodies, group, walls, skins);
+  team.each(chunks_.size(), [&](std::size_t c) { find_candidates(c, bodies, group, walls, skins); });
 }
 
 void WallContacts::find_candidates(std::size_t c, const Bodies& bodies, std::span<const std::uint16_t> group,

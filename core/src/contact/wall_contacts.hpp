@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "bodies/bodies.hpp"
-#include "contact/chunks.hpp"
 #include "contact/skins.hpp"
 #include "grit/archive.hpp"
 #include "grit/contact/contact_law.hpp"
 #include "grit/geometry.hpp"
+#include "threads/team.hpp"
 
 namespace grit {
 
@@ -76,7 +76,7 @@ class WallContacts {
   /// body; may be empty if walls act on all groups. `order`: as in ContactTable::rebuild().
   void rebuild(const Bodies& bodies, std::span<const std::uint16_t> group, std::span<const WallSurface> walls,
                const Skins& skins, std::span<const StateField> fields,
-               std::optional<std::span<const std::uint32_t>> order);
+               std::optional<std::span<const std::uint32_t>> order, Team& team);
   /// Finds the candidates of one chunk again, of the same bodies and walls. Contacts and their histories stay.
   void find_candidates(std::size_t chunk, const Bodies& bodies, std::span<const std::uint16_t> group,
                        std::span<const WallSurface> walls, const Skins& skins);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace grit {
 namespace {
@@ -14,7 +15,7 @@ bool may_leave(const std::vector<std::string>& open_sides, int axis, bool high) 
 }  // namespace
 
 Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std::vector<std::string>& open_sides,
-             const std::function<void(std::size_t body, int axis, bool high)>& escaped) {
+             const std::function<void(std::size_t body, int axis, bool high)>& escaped, Team& team) {
   const Vec3 period = cell.high - cell.low;
   Wrapped result{std::vector<bool>(bodies.count(), false)};
   const auto outside = [&](const Vec3& x, int k) { return x[k] < cell.low[k] || x[k] > cell.high[k]; };
@@ -54,32 +55,53 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std
         bodies.clumps.of_body[bodies.clumps.spheres[s]].periods[static_cast<std::size_t>(k)] -=
             static_cast<std::int8_t>(periods);
     }
-  for (std::size_t i = 0; i < bodies.count(); ++i) {
-    Vec3 x = xyz(bodies.position[i]), v = xyz(bodies.velocity[i]);
-    const bool in_clump = bodies.clumps.clump_of(i) != no_clump;
-    bool moved = false;
-    for (int n = 0; n < 3; ++n) {
-      const int k = axis(n);
-      if (!cell.periodic[as_index(k)]) {
-        const bool high = x[k] > cell.high[k];
-        if (!outside(x, k)) continue;
-        if (!may_leave(open_sides, k, high)) escaped(i, k, high);
-        if (!in_clump) result.leaves[i] = true;
-        continue;
+  struct Escape {
+    std::size_t body;
+    int axis;
+    bool high;
+  };
+  struct Part {
+    std::vector<double> gained;  // energies, in the order of the bodies
+    std::optional<Escape> escape;
+  };
+  std::vector<Part> parts(chunks_of(bodies.count()));
+  // Bits of different chunks are in different words of result.leaves.
+  static_assert(chunk_bodies % 64 == 0);
+  team.each(parts.size(), [&](std::size_t chunk) {
+    Part& part = parts[chunk];
+    const ChunkRange range(chunk, bodies.count());
+    for (std::size_t i = range.first; i < range.last && !part.escape; ++i) {
+      Vec3 x = xyz(bodies.position[i]), v = xyz(bodies.velocity[i]);
+      const bool in_clump = bodies.clumps.clump_of(i) != no_clump;
+      bool moved = false;
+      for (int n = 0; n < 3; ++n) {
+        const int k = axis(n);
+        if (!cell.periodic[as_index(k)]) {
+          const bool high = x[k] > cell.high[k];
+          if (!outside(x, k)) continue;
+          if (!may_leave(open_sides, k, high)) part.escape = part.escape.value_or(Escape{i, k, high});
+          if (!in_clump) result.leaves[i] = true;
+          continue;
+        }
+        const double periods = periods_off(x, k);
+        if (periods == 0) continue;
+        shift(x, periods, k);
+        if (!bodies.origin.empty()) shift(bodies.origin[i], periods, k);
+        const double own = jump(v, periods, k, bodies.velocity[i].w);
+        if (!in_clump) part.gained.push_back(own);
+        if (in_clump)
+          bodies.clumps.of_body[i].periods[static_cast<std::size_t>(k)] += static_cast<std::int8_t>(periods);
+        else if (x[k] >= cell.high[k]) x[k] = cell.low[k];
+        moved = true;
       }
-      const double periods = periods_off(x, k);
-      if (periods == 0) continue;
-      shift(x, periods, k);
-      if (!bodies.origin.empty()) shift(bodies.origin[i], periods, k);
-      const double own = jump(v, periods, k, bodies.velocity[i].w);
-      if (!in_clump) result.energy_gained += own;
-      if (in_clump) bodies.clumps.of_body[i].periods[static_cast<std::size_t>(k)] += static_cast<std::int8_t>(periods);
-      else if (x[k] >= cell.high[k]) x[k] = cell.low[k];
-      moved = true;
+      if (!moved) continue;
+      bodies.position[i] = {x.x(), x.y(), x.z(), bodies.position[i].w};
+      bodies.velocity[i] = {v.x(), v.y(), v.z(), bodies.velocity[i].w};
     }
-    if (!moved) continue;
-    bodies.position[i] = {x.x(), x.y(), x.z(), bodies.position[i].w};
-    bodies.velocity[i] = {v.x(), v.y(), v.z(), bodies.velocity[i].w};
+  });
+  for (const Part& part : parts) {
+    if (part.escape) escaped(part.escape->body, part.escape->axis, part.escape->high);
+    for (const double gained : part.gained) result.energy_gained += gained;
   }
   return result;
 }

@@ -9,6 +9,7 @@
 #include "domain/deforming_cell.hpp"
 #include "grit/engine.hpp"
 #include "grit/world.hpp"
+#include "threads/team.hpp"
 
 namespace grit {
 
@@ -21,7 +22,7 @@ struct Wrapped {
 /// axis; `open_sides` has entries such as "-x". Calls `escaped(body, axis, high)`, which must throw, for a body outside
 /// a closed side.
 Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std::vector<std::string>& open_sides,
-             const std::function<void(std::size_t body, int axis, bool high)>& escaped);
+             const std::function<void(std::size_t body, int axis, bool high)>& escaped, Team& team);
 
 /// Expresses the shifts of spheres relative to their clumps in new periods; see DeformingCell::reduce_tilt().
 void change_periods(Bodies& bodies, const Eigen::Matrix3i& of_old);

@@ -23,7 +23,8 @@ void each_overlap(const State& state, const World& world, IsNew is_new, Use use)
   Skins none;
   none.reset(std::vector<double>(chunks_of(bodies.count()), 0.0), 0, 0);
   NeighbourSearch search;
-  search.build(bodies, state.cell.cell(), none);
+  Team alone(1);
+  search.build(bodies, state.cell.cell(), none, alone);
   std::vector<Candidate> found;
   for (std::uint32_t body = 0; body < bodies.count(); ++body) {
     found.clear();

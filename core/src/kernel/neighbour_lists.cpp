@@ -93,7 +93,7 @@ void NeighbourLists::rebuild(const Bodies& bodies, const DeformingCell& cell, co
                              std::vector<double> reaches, double dt, double wall_speed, Passes& passes) {
   reaches_ = std::move(reaches);
   lay_skins(bodies, cell, statistics, dt, wall_speed, passes);
-  search_.build(bodies, cell.cell(), skins_);
+  search_.build(bodies, cell.cell(), skins_, passes.team());
   reference_ = bodies.position, reference_cell_ = cell.cell();
   ++rebuilds_;
   requested_ = false;

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-#include "contact/team.hpp"
 #include "kernel/state.hpp"
+#include "threads/team.hpp"
 
 namespace grit {
 

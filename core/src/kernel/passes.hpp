@@ -6,12 +6,12 @@
 #include <numeric>
 #include <vector>
 
-#include "contact/chunks.hpp"
-#include "contact/stopwatch.hpp"
-#include "contact/team.hpp"
 #include "grit/contact/batch.hpp"
 #include "kernel/model.hpp"
 #include "motion/motion.hpp"
+#include "threads/chunks.hpp"
+#include "threads/stopwatch.hpp"
+#include "threads/team.hpp"
 
 namespace grit {
 
@@ -87,13 +87,6 @@ class Passes {
   std::vector<ChunkResult> chunks_;
   std::vector<PhaseTime> phases_;
   PhaseTime passes_;  // of all calls of each()
-};
-
-/// First body of a chunk, and one past its last.
-struct ChunkRange {
-  std::size_t first, last;
-  ChunkRange(std::size_t chunk, std::size_t count)
-      : first(std::min(count, chunk * chunk_bodies)), last(std::min(count, first + chunk_bodies)) {}
 };
 
 }  // namespace grit

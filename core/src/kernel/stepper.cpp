@@ -58,21 +58,23 @@ void Stepper::rebuild() {
     change_periods(bodies, moved);
     cell.update_images(state_.time.previous_dt);
   }
-  Wrapped wrapped = wrap(bodies, cell.cell(), cell.image_velocities(state_.time.previous_dt),
-                         state_.settings.open_sides, [this](std::size_t body, int axis, bool high) {
-                           fail_at_body(state_, Guard::domain, group_keys(state_, body), body,
-                                        "left the domain through its " + std::string(high ? "upper" : "lower") + " " +
-                                            "xyz"[axis] + " side",
-                                        "close the domain there with a wall, make it larger, or name the side "
-                                        "in /domain/open_sides");
-                         });
+  Wrapped wrapped = wrap(
+      bodies, cell.cell(), cell.image_velocities(state_.time.previous_dt), state_.settings.open_sides,
+      [this](std::size_t body, int axis, bool high) {
+        fail_at_body(
+            state_, Guard::domain, group_keys(state_, body), body,
+            "left the domain through its " + std::string(high ? "upper" : "lower") + " " + "xyz"[axis] + " side",
+            "close the domain there with a wall, make it larger, or name the side "
+            "in /domain/open_sides");
+      },
+      passes_.team());
   balance_.add_cell(wrapped.energy_gained);
   mark_removed(wrapped.leaves);
   if (!arrivals_.empty()) check_arrivals(state_, view_, arrivals_);
   const bool some_leave = std::ranges::find(wrapped.leaves, true) != wrapped.leaves.end();
   std::optional<std::vector<std::uint32_t>> order;
   if (state_.lists.sorts() || some_leave || !arrivals_.empty()) {
-    order = spatial_order(bodies, cell.cell());
+    order = spatial_order(bodies, cell.cell(), passes_.team());
     if (some_leave) {
       const auto motion_of = [this](std::size_t body) -> const MotionSettings& { return state_.motion_of(body); };
       for (Leaving& one : leaving(bodies, wrapped.leaves, state_.time.time, motion_of)) {
@@ -83,7 +85,7 @@ void Stepper::rebuild() {
       }
       std::erase_if(*order, [&](std::uint32_t i) { return wrapped.leaves[i]; });
     }
-    bodies.reorder(*order);
+    bodies.reorder(*order, passes_.team());
     find_groups(state_);
     state_.sum.resize(bodies.count() + 1), passes_.resize(bodies.count());
   }
@@ -92,7 +94,7 @@ void Stepper::rebuild() {
   state_.pairs.rebuild(bodies, state_.lists.search(), cell.periodic(), state_.settings.fields, order, passes_.team());
   readiness_.build(state_.pairs.reached());
   state_.wall_contacts.rebuild(bodies, state_.group, state_.surfaces, state_.lists.skins(), state_.settings.fields,
-                               order);
+                               order, passes_.team());
   bounds_.rebuild(state_);
   arrivals_.clear();
   view_.invalidate();  // engines may have read bodies in their former order

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/chunks.hpp"
+#include "threads/chunks.hpp"
 
 namespace grit {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "contact/stopwatch.hpp"
+#include "threads/stopwatch.hpp"
 #include "description/placed_error.hpp"
 #include "grit/toolkit/limited_fields.hpp"
 #include "kernel/group_view.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "grit/checkpoint.hpp"
-#include "contact/stopwatch.hpp"
+#include "threads/stopwatch.hpp"
 
 namespace grit {
 

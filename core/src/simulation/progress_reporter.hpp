@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "grit/simulation.hpp"
-#include "contact/stopwatch.hpp"
+#include "threads/stopwatch.hpp"
 #include "simulation/stage_runner.hpp"
 
 namespace grit {

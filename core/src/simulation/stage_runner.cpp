@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/stopwatch.hpp"
+#include "threads/stopwatch.hpp"
 #include "description/placed_error.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
@@ -47,7 +47,10 @@ void StageRunner::prepare() {
 }
 
 void StageRunner::start() {
-  kernel_.find_forces();
+  {
+    const Stopwatch watch(stepping_);
+    kernel_.find_forces();
+  }
   check_ends(scene_, world_.dt());
   begin_stage(world_.time());
   begin_recording();

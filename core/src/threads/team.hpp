@@ -9,7 +9,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "contact/stopwatch.hpp"
+#include "threads/chunks.hpp"
+#include "threads/stopwatch.hpp"
 
 namespace grit {
 
@@ -27,6 +28,15 @@ class Team {
   unsigned threads() const { return static_cast<unsigned>(workers_.size()) + 1; }
   /// Computing time of passes that several threads can share, whether or not there are several [s].
   double parallel_seconds() const { return parallel_seconds_; }
+
+  /// Calls work(i) for i = 0 … count − 1, chunk by chunk of bodies.
+  template <class Work>
+  void each_body(std::size_t count, Work work) {
+    each(chunks_of(count), [&](std::size_t chunk) {
+      const ChunkRange range(chunk, count);
+      for (std::size_t i = range.first; i < range.last; ++i) work(i);
+    });
+  }
 
   /// Calls work(chunk) for chunk = 0 … chunks − 1, from any thread, and returns when all are done. One single thread
   /// takes them in order; several take fewer than 2²⁰ and throw Error for more. If `work` throws, one of its exceptions

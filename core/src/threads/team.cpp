@@ -1,12 +1,12 @@
-#include "contact/team.hpp"
+#include "threads/team.hpp"
 
 #include <algorithm>
 #include <string>
 #include <system_error>
 #include <utility>
 
-#include "contact/chunks.hpp"
 #include "grit/error.hpp"
+#include "threads/chunks.hpp"
 
 namespace grit {
 namespace {
