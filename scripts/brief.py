@@ -1,7 +1,6 @@
-"""Short versions of descriptions, and markers in pages, for faults.py and restarts.py."""
+"""Short versions of descriptions, for faults.py and restarts.py."""
 import json
 import subprocess
-from datetime import date
 
 LIMIT = '1 h'                                            # of a stage that ends after steps
 
@@ -37,36 +36,3 @@ def set_output(description, **values):
     output.pop('summary', None)
     output.update(values)
     return description
-
-
-# ---- tables in pages
-
-def rows_of(text, name):
-    """The rows between the markers of a table, by their first column."""
-    begin, end = markers(name)
-    if begin not in text or end not in text:
-        raise ValueError(f'the page has no markers {begin} and {end}')
-    lines = text[text.index(begin):text.index(end)].splitlines()
-    rows = [[cell.strip() for cell in line.strip('|').split('|')] for line in lines if line.startswith('|')]
-    return {row[0]: row for row in rows[2:]}             # after the head
-
-
-def markers(name):
-    return f'<!-- {name} -->', f'<!-- end of {name} -->'
-
-
-def with_table(text, name, head, rows, order):
-    """The page with its table replaced. Rows that are not given stay as they are; `order` has the first columns."""
-    known = rows_of(text, name) | {str(row[0]): [str(cell) for cell in row] for row in rows}
-    names = [one for one in order if one in known] + sorted(known.keys() - set(order))
-    begin, end = markers(name)
-    return text[:text.index(begin)] + begin + '\n' + table(head, [known[one] for one in names]) + text[text.index(end):]
-
-
-def table(head, rows):
-    lines = [head, ['---'] * len(head), *rows]
-    return ''.join('| ' + ' | '.join(str(cell) for cell in line) + ' |\n' for line in lines)
-
-
-def today():
-    return date.today().isoformat()

@@ -41,6 +41,7 @@ import h5py
 
 import brief
 import same_results
+import tables
 
 ROOT = Path(__file__).resolve().parents[1]
 WORK = ROOT / 'results' / 'faults'
@@ -554,7 +555,7 @@ class Tally:
     asked: int = 0                                       # with those in which the fault was not met
 
     def row(self, fault):
-        return [fault, self.tried, self.lost, self.bits, self.status, f'{self.seconds / 3600:.2f}', brief.today()]
+        return [fault, self.tried, self.lost, self.bits, self.status, f'{self.seconds / 3600:.2f}', tables.today()]
 
 
 class Campaign:
@@ -652,11 +653,11 @@ class Campaign:
 
     def report(self):
         rows = [tally.row(fault) for fault, tally in self.tallies.items()]
-        print(brief.table(HEAD, rows), end='')
+        print(tables.table(HEAD, rows), end='')
         if self.given.markdown is not None:
             page = self.given.markdown.read_text(encoding='utf-8')
             tried = [row for row in rows if row[1] > 0]
-            self.given.markdown.write_text(brief.with_table(page, 'faults', HEAD, tried, list(FAULTS)), encoding='utf-8')
+            self.given.markdown.write_text(tables.with_table(page, 'faults', HEAD, tried, list(FAULTS)), encoding='utf-8')
         never = [fault for fault, tally in self.tallies.items() if tally.tried == 0]
         if never:
             print(f'never applied: {", ".join(never)}')

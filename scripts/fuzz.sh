@@ -1,14 +1,20 @@
 #!/usr/bin/env bash
 # Fuzzes the readers of files from strangers (tests/fuzz) with libFuzzer and sanitizers, one after the other, and prints
 # a table of targets, runs and findings. Findings stay in build-fuzz/findings/TARGET. Exit status 1 if there are any.
-#   fuzz.sh [SECONDS [TARGET…]]     SECONDS for each target, default 60; default: all targets
+#   fuzz.sh [--markdown] [SECONDS [TARGET…]]     SECONDS for each target, default 60; default: all targets
+# --markdown also writes the rows into docs/evidence/reliability.md.
 # A finding again: build-fuzz/fuzz/fuzz_TARGET build-fuzz/findings/TARGET/FILE
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+page=
+if [[ ${1-} == --markdown ]]; then
+  page=docs/evidence/reliability.md
+  shift
+fi
 seconds=${1:-60}
 shift || true
-[[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: found '$seconds' seconds; usage: fuzz.sh [SECONDS [TARGET…]]" >&2; exit 1; }
+[[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: found '$seconds' seconds; usage: fuzz.sh [--markdown] [SECONDS [TARGET…]]" >&2; exit 1; }
 
 cmake --preset fuzz >&2
 cmake --build --preset fuzz >&2
@@ -58,5 +64,6 @@ for target in "${targets[@]}"; do
   findings=$(verified "$target")
   total=$((total + findings))
   printf '%-14s %12s %9s\n' "$target" "$runs" "$findings"
+  [[ -z $page ]] || scripts/tables.py "$page" fuzzing "$target" "$runs" "$findings" "$(awk "BEGIN { printf \"%.2f\", $seconds / 3600 }")"
 done
 [[ $total == 0 ]] || { echo "fuzz: findings are in $folder/findings; make a test of each" >&2; exit 1; }

@@ -27,6 +27,7 @@ import h5py
 
 import brief
 import same_results
+import tables
 
 ROOT = Path(__file__).resolve().parents[1]
 WORK = ROOT / 'results' / 'restarts'
@@ -195,7 +196,7 @@ def main():
             step, steps, lines = '', '', [str(error)]
             result = 'failed'
         failed += bool(lines)
-        rows.append([name, steps, step, result, brief.today()])
+        rows.append([name, steps, step, result, tables.today()])
         print(f'{name}: {result}' + ('' if result != 'failed' else f': {lines[0]}'), flush=True)
         used |= scene.used
         scenario = scenario_of(file)
@@ -203,10 +204,10 @@ def main():
             used.add(('scenario', scenario))
         if not lines:
             shutil.rmtree(scene.place)
-    print(brief.table(HEAD, rows), end='')
+    print(tables.table(HEAD, rows), end='')
     if given.markdown is not None:
         page = given.markdown.read_text(encoding='utf-8')
-        given.markdown.write_text(brief.with_table(page, 'restarts', HEAD, rows, list(scenes())), encoding='utf-8')
+        given.markdown.write_text(tables.with_table(page, 'restarts', HEAD, rows, list(scenes())), encoding='utf-8')
     if failed:
         print(f'the runs that failed are in {place}')
     else:

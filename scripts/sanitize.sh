@@ -1,18 +1,33 @@
 #!/usr/bin/env bash
 # Finds errors of memory, undefined behaviour and data races: builds and runs the whole test suite with sanitizers, or a
 # short run, its continuation and its report under valgrind. Needs scripts/install-deps.sh --sanitizers.
-#   sanitize.sh address|thread [ARGUMENTS OF CTEST…]     e.g. sanitize.sh thread -R resume
-#   sanitize.sh valgrind
+#   sanitize.sh [--markdown] address|thread [ARGUMENTS OF CTEST…]     e.g. sanitize.sh thread -R resume
+#   sanitize.sh [--markdown] valgrind
+# --markdown also writes a row into docs/evidence/reliability.md.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+page=
+if [[ ${1-} == --markdown ]]; then
+  page=docs/evidence/reliability.md
+  shift
+fi
+record() {
+  [[ -z $page ]] || scripts/tables.py "$page" sanitizers "$1" "$2" "$3" "$(awk "BEGIN { printf \"%.2f\", $SECONDS / 3600 }")"
+}
+
 case ${1-} in
   address | thread)
-    preset=sanitize-$1
+    kind=$1 preset=sanitize-$1
     shift
     cmake --preset "$preset" -DGRIT_BATCH_TESTS=ON -DCMAKE_UNITY_BUILD=ON
     cmake --build --preset "$preset"
-    exec ctest --preset "$preset" -j"$(nproc)" "$@"
+    status=0
+    ctest --preset "$preset" -j"$(nproc)" "$@" | tee "build-$preset/ctest.log" || status=$?
+    # 97% tests passed, 3 tests failed out of 100
+    read -r failed tests < <(sed -nE 's/.*tests passed, ([0-9]+) tests failed out of ([0-9]+)/\1 \2/p' "build-$preset/ctest.log")
+    record "$kind" "$tests tests${*:+ ($*)}" "$failed"
+    exit "$status"
     ;;
   valgrind)
     cmake --preset valgrind
@@ -33,9 +48,10 @@ case ${1-} in
     watched run bench/scenes/tiny.json --out "$folder/run" --threads 2 "${sets[@]}"
     watched report "$folder/run"
     echo "valgrind: no errors"
+    record valgrind "check, run and report of a short run" 0
     ;;
   *)
-    echo "sanitize: found '${1-}'; usage: sanitize.sh address|thread [ARGUMENTS OF CTEST…] | valgrind" >&2
+    echo "sanitize: found '${1-}'; usage: sanitize.sh [--markdown] address|thread [ARGUMENTS OF CTEST…] | valgrind" >&2
     exit 1
     ;;
 esac

@@ -24,7 +24,7 @@ try:
 except ImportError as missing:
     print(f'skipped: {missing}')
     sys.exit(SKIPPED)
-import brief                                             # noqa: E402
+import tables                                            # noqa: E402
 import faults                                            # noqa: E402
 import restarts                                          # noqa: E402
 
@@ -114,14 +114,25 @@ class Pages(unittest.TestCase):
     PAGE = 'before\n<!-- faults -->\n| fault | tried |\n| --- | --- |\n| b | 1 |\n| c | 2 |\n<!-- end of faults -->\nafter\n'
 
     def test_rows_are_replaced_and_kept_in_order(self):
-        text = brief.with_table(self.PAGE, 'faults', ('fault', 'tried'), [['a', 7], ['c', 8]], ['a', 'b', 'c'])
+        text = tables.with_table(self.PAGE, 'faults', ('fault', 'tried'), [['a', 7], ['c', 8]], ['a', 'b', 'c'])
         self.assertEqual(text, 'before\n<!-- faults -->\n| fault | tried |\n| --- | --- |\n| a | 7 |\n| b | 1 |\n| c | 8 |\n'
                                '<!-- end of faults -->\nafter\n')
 
-    def test_the_page_has_both_tables(self):
+    def test_one_row_is_replaced_or_added(self):
+        text = tables.with_row(tables.with_row(self.PAGE, 'faults', ['b', 5]), 'faults', ['a', 2])
+        self.assertEqual(text, self.PAGE.replace('| b | 1 |', '| b | 5 |')
+                         .replace('<!-- end', '| a | 2 |\n<!-- end'))
+        with self.assertRaisesRegex(ValueError, 'found 1 cells, b; the table faults has 2: fault, tried'):
+            tables.with_row(self.PAGE, 'faults', ['b'])
+        with self.assertRaisesRegex(ValueError, 'no markers <!-- fuzzing -->'):
+            tables.with_row(self.PAGE, 'fuzzing', ['b', 1])
+
+    def test_the_page_has_all_tables(self):
         page = (ROOT / 'docs/evidence/reliability.md').read_text(encoding='utf-8')
-        self.assertLessEqual(set(brief.rows_of(page, 'faults')), set(faults.FAULTS))
-        self.assertLessEqual(set(brief.rows_of(page, 'restarts')), set(restarts.scenes()))
+        self.assertLessEqual(set(tables.rows_of(page, 'faults')), set(faults.FAULTS))
+        self.assertLessEqual(set(tables.rows_of(page, 'restarts')), set(restarts.scenes()))
+        self.assertLessEqual(set(tables.rows_of(page, 'fuzzing')), {file.stem for file in (ROOT / 'tests/fuzz').glob('*.cpp')})
+        self.assertLessEqual(set(tables.rows_of(page, 'sanitizers')), {'address', 'thread', 'valgrind'})
 
 
 CASES = {'campaign': (Campaign,), 'restarts': (Restarts,), 'self-test': (WrongPrograms, Messages, Pages)}
