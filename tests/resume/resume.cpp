@@ -315,11 +315,11 @@ TEST_F(Resume, ContinuesWithOtherGuards) {
   EXPECT_THAT(on.err, HasSubstr("continues from step"));
   EXPECT_EQ(whole("never", "{\"travel\": 0.05}", false).status, 0);
   expect_same_results("stopped", "never");
-  // The guard of overlap sets the time step of springs that stiffen.
-  EXPECT_EQ(whole("other", "{\"travel\": 1e-3}", false).status, 4);
-  const auto overlap = whole("other", "{\"travel\": 0.05, \"overlap\": 0.4}", true);
-  EXPECT_EQ(overlap.status, 2);
-  EXPECT_THAT(overlap.err, AllOf(HasSubstr("/guards/overlap: found 0.4"), Not(HasSubstr("/guards/travel"))));
+  EXPECT_EQ(whole("deep", "{\"overlap\": 1e-3}", false).status, 4);
+  const auto deeper = whole("deep", "{\"overlap\": 0.4}", true);
+  EXPECT_EQ(deeper.status, 0) << deeper.err;
+  EXPECT_THAT(deeper.err, HasSubstr("continues from step"));
+  expect_same_results("deep", "never");
   // A completed run met its own guards, not others.
   const auto done = whole("stopped", "{\"travel\": 0.04}", true);
   EXPECT_EQ(done.status, 2);
@@ -346,6 +346,9 @@ TEST_F(Resume, GoesOnWithTheGuardThatItsAdviceNames) {
   EXPECT_THAT(stopped("limited", {"/time_step/max_displacement=0.04"}),
               HasSubstr("change /guards/travel and continue with --resume"));
   EXPECT_EQ(on("limited", "/guards/travel=0.1").status, 0);
+  EXPECT_THAT(stopped("deep", {"/guards/travel=0.05", "/guards/overlap=1e-3"}),
+              HasSubstr("change /guards/overlap and continue with --resume"));
+  EXPECT_EQ(on("deep", "/guards/overlap=0.2").status, 0);
   EXPECT_THAT(stopped("staged", {R"(/stages/0/change={"guards": {"travel": 1e-3}})"}),
               HasSubstr("--resume cannot go on with another /guards/travel, as it is set by a stage"));
 }

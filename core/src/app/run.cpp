@@ -96,9 +96,9 @@ bool is_done(const Description& run_json, const std::filesystem::path& folder, c
 
 /// Advice after a guard that may only decide where a run ends: then it can be changed before resuming.
 std::string resume_advice(Guard guard, const Description& description, const std::filesystem::path& folder) {
-  if (guard != Guard::travel && guard != Guard::energy) return "";
+  if (guard != Guard::overlap && guard != Guard::travel && guard != Guard::energy) return "";
   if (!has_checkpoint(folder)) return "";
-  const std::string name = guard == Guard::travel ? "travel" : "energy";
+  const std::string name = guard == Guard::overlap ? "overlap" : guard == Guard::travel ? "travel" : "energy";
   const double usual = GuardsDescription().travel, any = 1e300, now = description.at("guards").at(name);
   const bool freely = can_go_on_with(description, name, any);
   if (!freely && !(guard == Guard::travel && now < usual && can_go_on_with(description, name, usual)))

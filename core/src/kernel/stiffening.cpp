@@ -17,6 +17,8 @@ constexpr double overlap_growth = 1.2, shallowest = 1e-6;
 // on. A face-centred packing has 40 k_s/m, and oscillates from a quarter of that on. Where dashpots shorten the step
 // the limit is higher: the packing of tests/stability is stable at 0.4 and unstable at 0.5.
 constexpr double packing_fraction = 0.06;
+// Overlap over a radius up to which impacts are expected. The guard does not enter: it only decides where a run stops.
+constexpr double deepest = 1;
 
 /// Normal stiffness of two bodies of the smallest radius, or of one and a wall, at this overlap over a radius [N/m].
 double stiffness_of_smallest(const State& state, std::size_t a, std::size_t b, bool wall, double overlap) {
@@ -90,7 +92,6 @@ void Stiffening::expect(const State& state, const DisplacementBounds& bounds) {
   fastest = std::sqrt(fastest);
   const double speed =
       std::max({2 * fastest, fastest + bounds.wall_closing_speed(), bounds.closing_speed(state.time.previous_dt)});
-  const double deepest = std::min(1.0, state.settings.guards.overlap);
   double overlap = std::max(state.overlap, linear_until_);
   while (overlap < deepest && speed_of_impact(state, overlap) < speed) overlap *= overlap_growth;
   expected_ = overlap;

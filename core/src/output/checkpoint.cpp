@@ -162,7 +162,7 @@ std::string differences_on_the_way(const Description& now, const Description& th
   const auto without = [&](Description description) {
     const auto guards = description.find("guards");
     if (guards == description.end() || !guards->is_object()) return description;
-    guards->erase("energy");
+    guards->erase("overlap"), guards->erase("energy");
     if (both_only_stop) guards->erase("travel");
     return description;
   };

@@ -51,11 +51,10 @@ std::optional<LastCheckpoint> last_checkpoint(const std::filesystem::path& folde
 /// Lines with the pointers at which two descriptions differ, each with the found and the allowed value; stages are
 /// compared by name. Empty if the descriptions are of the same run. /output/checkpoint_every may differ.
 std::string differences(const Description& now, const Description& then);
-/// The same, but empty if a run of one can resume from a checkpoint of the other: /guards/travel and /guards/energy may
-/// differ too, as they only decide where a run stops, unless a travel guard above its default sets the time step.
-/// /guards/overlap may not, as it also affects the time step of stiffening springs.
+/// The same, but empty if a run of one can resume from a checkpoint of the other: /guards may differ too, as they only
+/// decide where a run stops, unless a travel guard above its default sets the time step.
 std::string differences_on_the_way(const Description& now, const Description& then);
-/// Whether a run goes on with another limit of a guard, "travel" or "energy", as differences_on_the_way() has it. Not
+/// Whether a run goes on with another limit of a guard, "overlap", "travel" or "energy", as differences_on_the_way() has it. Not
 /// if a stage sets that guard.
 bool can_go_on_with(const Description& description, const std::string& guard, double limit);
 /// What to do if stages were added, removed or moved: a line to append to differences(); empty if they were not.
