@@ -27,9 +27,12 @@ std::filesystem::path temporary_path(const std::filesystem::path& path) {
 }
 
 void publish(const std::filesystem::path& path) {
-  std::error_code error;
-  std::filesystem::rename(temporary_path(path), path, error);
-  if (error) throw FileError(path.string() + ": cannot replace the file: " + error.message());
+  const auto temporary = temporary_path(path);
+  std::error_code error, ignored;
+  std::filesystem::rename(temporary, path, error);
+  if (!error) return;
+  std::filesystem::remove(temporary, ignored);
+  throw FileError(path.string() + ": cannot replace the file: " + error.message());
 }
 
 void publish_new(const std::filesystem::path& path) {

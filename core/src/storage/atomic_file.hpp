@@ -11,7 +11,7 @@ namespace grit {
 /// The temporary file that is renamed to `path`: in the same folder, so that the rename is atomic.
 std::filesystem::path temporary_path(const std::filesystem::path& path);
 
-/// Renames the temporary file to `path`. Throws FileError.
+/// Renames the temporary file to `path`, or removes it and throws FileError.
 void publish(const std::filesystem::path& path);
 
 /// The same, but another file of this name is kept, and an error.

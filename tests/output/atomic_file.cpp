@@ -1,0 +1,32 @@
+#include "storage/atomic_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "folder.hpp"
+#include "grit/error.hpp"
+
+namespace grit::atomic_file_tests {
+namespace {
+
+std::vector<std::string> names_in(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename());
+  return names;
+}
+
+TEST(AtomicFile, LeavesNothingBesideItWhereItCannotBeReplaced) {
+  const OwnFolder folder;
+  const auto taken = folder / "run.json";
+  std::filesystem::create_directory(taken);
+  for (const auto write : {write_atomically, write_new}) {
+    EXPECT_THROW(write(taken, "text"), FileError);
+    EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("run.json"));
+  }
+}
+
+}  // namespace
+}  // namespace grit::atomic_file_tests
