@@ -28,6 +28,8 @@ struct SimulationOptions {
   std::vector<std::string> sets;  ///< changes of the description, "/pointer=value", in order
   /// Folders searched for plugins, before those of GRIT_PLUGIN_PATH and those next to the library.
   std::vector<std::string> plugin_path;
+  /// State of bodies that World then has, also if no component requests it.
+  StateRequest state = {};
   /// Resumes from this state of a simulation of the same description, as resume() does. Bodies are not made first: a
   /// sample from which the simulation began, or files of bodies, may have been removed.
   std::optional<Checkpoint> checkpoint = {};
@@ -83,8 +85,12 @@ class Simulation {
   /// Whether all stages have ended.
   bool done() const;
 
-  /// The state at the present instant; positions and forces are consistent. Its spans are valid until the next step.
+  /// The state at the present instant; positions and forces are consistent. Its spans are valid until the next step;
+  /// keep() makes them last.
   const World& world() const;
+  /// Keeps the memory of an array of world(): its span stays valid, with the values of this instant, as long as the
+  /// result lives, also beyond the simulation, which continues in a copy.
+  std::shared_ptr<const void> keep(WorldArray array);
   /// All values of the description at the start, in SI.
   Description description() const;
 

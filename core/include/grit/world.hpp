@@ -22,6 +22,24 @@ enum class BodyState : unsigned {
   energy = 4,        ///< the energy balance of all bodies
 };
 
+/// Arrays of World whose memory Simulation::keep() can keep.
+enum class WorldArray : std::size_t {
+  ids,
+  positions,
+  velocities,
+  spins,
+  materials,
+  rotations,
+  displacements,
+  clump_of,
+  clumps,
+  departures,
+  forces,
+  moments,
+  contacts,
+};
+inline constexpr std::size_t world_arrays = 13;
+
 /// A set of BodyState.
 class StateRequest {
  public:

@@ -40,6 +40,7 @@
 #include "output/frame_size.hpp"
 #include "output/frame_space.hpp"
 #include "output/named_fields.hpp"
+#include "output/plugins_used.hpp"
 #include "output/reference_curve.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"

@@ -22,6 +22,7 @@
 #include "output/checkpoint.hpp"
 #include "output/frame_space.hpp"
 #include "output/own_files.hpp"
+#include "output/plugins_used.hpp"
 #include "output/read_results.hpp"
 #include "output/reference_curve.hpp"
 #include "output/shell_word.hpp"

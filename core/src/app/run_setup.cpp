@@ -1,7 +1,6 @@
 #include "app/run_setup.hpp"
 
-#include <set>
-#include <utility>
+#include <tuple>
 
 #include "bodies/make_bodies.hpp"
 
@@ -12,20 +11,6 @@ StateRequest picture_state(const SceneDescription& scene) {
   if (scene.output.picture->color == "rotation") return BodyState::rotation;
   if (scene.output.picture->color == "displacement") return BodyState::displacement;
   return {};
-}
-
-std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Registry& registry) {
-  std::set<std::pair<std::string, std::string>> names{{"contact", scene.contacts.type()}};
-  for (const auto& [name, bodies] : scene.bodies) names.emplace("body", bodies.kind.type());
-  for (const auto& [name, wall] : scene.walls) names.emplace("geometry", wall.geometry.type());
-  for (const auto& [name, engine] : scene.engines) names.emplace("engine", engine.engine.type());
-  for (const auto& [name, probe] : scene.probes) names.emplace("probe", probe.probe.type());
-  std::vector<PluginUsed> used;
-  for (const auto& [kind, name] : names) {
-    const PluginInfo& info = registry.info(kind, name);
-    used.push_back({kind, name, info.version, registry.file(kind, name), info.tag});
-  }
-  return used;
 }
 
 std::map<std::string, ClumpFacts> clumps_of(const Components& components) {

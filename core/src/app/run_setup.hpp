@@ -8,12 +8,8 @@
 #include "description/components.hpp"
 #include "description/description.hpp"
 #include "output/run_json.hpp"
-#include "plugins/registry.hpp"
 
 namespace grit {
-
-/// Every component of the scene, once, by kind and name.
-std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Registry& registry);
 
 /// Spheres and errors of each group of clumps.
 std::map<std::string, ClumpFacts> clumps_of(const Components& components);

@@ -25,6 +25,7 @@
 #include "kernel/kernel.hpp"
 #include "output/checkpoint.hpp"
 #include "output/own_files.hpp"
+#include "output/plugins_used.hpp"
 #include "output/read_results.hpp"
 #include "output/reference_curve.hpp"
 #include "output/run_facts.hpp"

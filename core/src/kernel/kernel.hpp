@@ -1,6 +1,7 @@
 // A simulation without stages, output or files: a state and the parts that advance it.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ class Kernel {
 
   const State& state() const { return state_; }
   const WorldView& world() const { return view_; }
+  /// See Simulation::keep().
+  std::shared_ptr<const void> keep(WorldArray array);
   double critical_time_step() const { return stepper_.time_step().critical(); }
   /// Kinetic over elastic energy; infinite without elastic energy.
   double kinetic_energy_ratio() const;

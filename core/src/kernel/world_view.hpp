@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "grit/world.hpp"
@@ -22,6 +23,9 @@ class WorldView final : public World {
   void invalidate();
   /// The same for forces and quantities that depend on them, and for settings.
   void invalidate_forces() { net_step_ = clump_step_ = held_step_ = never; }
+
+  /// As Simulation::keep(), of arrays that are computed on demand.
+  std::shared_ptr<const void> keep(WorldArray array);
 
   double time() const override { return state_.time.time; }
   std::uint64_t step() const override { return state_.time.step; }

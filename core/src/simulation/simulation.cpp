@@ -15,8 +15,8 @@ std::unique_ptr<Simulation::Parts> made(std::shared_ptr<const Registry> registry
   Scene scene = read_scene(std::move(document), *registry);
   const auto opened = std::make_shared<OpenedScene>(std::move(registry), std::move(scene));
   const bool resumes = options.checkpoint.has_value();
-  auto parts = std::make_unique<Simulation::Parts>(opened, resumes ? opened->prepare_to_resume() : opened->prepare(),
-                                                   options.threads);
+  auto parts = std::make_unique<Simulation::Parts>(
+      opened, resumes ? opened->prepare_to_resume(options.state) : opened->prepare(options.state), options.threads);
   if (resumes) parts->resume(*options.checkpoint);
   return parts;
 }
@@ -83,6 +83,8 @@ std::uint64_t Simulation::step(std::uint64_t steps) {
 bool Simulation::done() const { return parts_->runner.done(); }
 
 const World& Simulation::world() const { return parts_->kernel.world(); }
+
+std::shared_ptr<const void> Simulation::keep(WorldArray array) { return parts_->kernel.keep(array); }
 
 Description Simulation::description() const { return resolved(*parts_->opened->scene.description); }
 

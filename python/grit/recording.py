@@ -1,0 +1,55 @@
+"""Values that a function in Python records during a run."""
+
+from collections.abc import Mapping
+
+import numpy
+
+from .errors import Error, UnknownName
+
+
+class Recording(Mapping):
+    """Values by name as arrays, one row per sample, with `time` [s] and `step`."""
+
+    def __init__(self, name, units):
+        self.name, self._units = name, {"time": "s", "step": "1", **(units or {})}
+        self._rows = {"time": [], "step": []}
+
+    def add(self, time, step, values):
+        if not isinstance(values, Mapping):
+            raise Error(f"probe {self.name!r} returned {type(values).__name__}; allowed is a dict of numbers, such as {{\"pressure\": 1.0}}")
+        try:
+            row = {str(key): float(value) for key, value in values.items()}
+        except (TypeError, ValueError) as error:
+            raise Error(f"probe {self.name!r} returned a value that is no number: {error}; give one name to each component of a vector") from error
+        known = self._rows.keys() - {"time", "step"}
+        if self._rows["time"] and row.keys() != known:
+            raise Error(f"probe {self.name!r} returned {sorted(row)}; allowed are the names of its first sample: {sorted(known)}")
+        if wrong := row.keys() & {"time", "step"}:
+            raise Error(f"probe {self.name!r} returned {sorted(wrong)}, which every sample has; choose other names")
+        for key, value in {"time": time, "step": step, **row}.items():
+            self._rows.setdefault(key, []).append(value)
+
+    def __getitem__(self, name):
+        if name not in self._rows:
+            raise UnknownName("value", name, list(self))
+        return numpy.array(self._rows[name])
+
+    def __iter__(self):
+        return iter(self._rows)
+
+    def __len__(self):
+        return len(self._rows)
+
+    def __repr__(self):
+        return f"<recording {self.name!r}: {len(self._rows['time'])} samples of {', '.join(self)}>"
+
+    def units(self, name):
+        """The unit that was given for a value; "" for none."""
+        if name not in self._rows:
+            raise UnknownName("value", name, list(self))
+        return self._units.get(name, "")
+
+    def to_pandas(self):
+        """A pandas DataFrame, with `time` as its index."""
+        import pandas
+        return pandas.DataFrame(dict(self)).set_index("time")

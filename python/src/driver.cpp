@@ -1,0 +1,184 @@
+#include "driver.hpp"
+
+#include <utility>
+
+#include "grit/error.hpp"
+
+namespace grit::python {
+namespace {
+
+// Taking the GIL in each step would make small simulations wait for other threads.
+constexpr auto signals_every = std::chrono::milliseconds(50);
+constexpr auto progress_after = std::chrono::milliseconds(500);
+constexpr double progress_every = 0.2;  // s
+
+}  // namespace
+
+/// While it lives the simulation belongs to this thread, and arrays that were taken before do not change.
+class Driver::Running {
+ public:
+  explicit Running(Driver& driver, py::handle owner = {}) : driver_(driver) {
+    driver_.arrays_.let_go();
+    driver_.runs_ = true, driver_.thread_ = std::this_thread::get_id(), driver_.owner_ = owner;
+    driver_.has_forces_ = false;
+  }
+  Running(const Running&) = delete;
+  ~Running() { driver_.runs_ = false, driver_.owner_ = {}; }
+  /// Runs `work` without the GIL.
+  template <class Work>
+  auto free(const Work& work) {
+    const py::gil_scoped_release released;
+    return work();
+  }
+
+ private:
+  Driver& driver_;
+};
+
+Driver::Driver(Simulation simulation) : simulation_(std::move(simulation)) {
+  simulation_.interrupt_when([this] { return stops(); });
+  simulation_.on_progress([this](const Progress& progress) { report(progress); }, progress_every);
+}
+
+void Driver::refuse_other_threads() const {
+  if (runs_ && thread_ != std::this_thread::get_id())
+    throw Error(
+        "this simulation is running in another thread; wait until run() has returned there, read it in a callback "
+        "(@sim.every), or use one simulation per thread");
+}
+
+void Driver::refuse_while_running(const char* what) const {
+  refuse_other_threads();
+  if (runs_)
+    throw Error(std::string(what) + " cannot be called in a callback of the same simulation; call it after run()");
+}
+
+bool Driver::stops() {
+  if (!runs_) return false;
+  const World& world = simulation_.world();
+  // As callbacks by time, at the nearest step.
+  if (world.step() >= last_step_ || world.time() >= last_time_ - 0.5 * world.dt()) return true;
+  if (const auto now = Clock::now(); now - asked_ >= signals_every) {
+    asked_ = now;
+    const py::gil_scoped_acquire acquired;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  return false;
+}
+
+void Driver::observe(std::size_t number) {
+  if (!runs_) return;
+  const py::gil_scoped_acquire acquired;
+  has_forces_ = true;
+  owner_.attr("_observed")(number);
+  has_forces_ = false;
+  arrays_.let_go();
+}
+
+void Driver::report(const Progress& now) {
+  if (!shows_progress_ || Clock::now() - began_ < progress_after) return;
+  const py::gil_scoped_acquire acquired;
+  owner_.attr("_progressed")(now.stage, now.stage_number, now.stages, now.fraction, now.seconds_left, now.time,
+                             now.particle_steps_per_second);
+}
+
+void Driver::run(const py::object& owner, const Goal& goal, bool shows_progress) {
+  refuse_while_running("run()");
+  Running running(*this, owner);
+  const World& world = simulation_.world();
+  const std::uint64_t furthest = std::numeric_limits<std::uint64_t>::max();
+  last_step_ = goal.steps > furthest - world.step() ? furthest : world.step() + goal.steps;
+  last_time_ = goal.time;
+  shows_progress_ = shows_progress;
+  began_ = asked_ = Clock::now();
+  has_begun_ = true;
+  try {
+    running.free([&] { return goal.stage ? simulation_.run_stage() : simulation_.run(); });
+    has_forces_ = true;
+  } catch (const NumericsError&) {
+    has_forces_ = true;  // those of the failure
+    throw;
+  }
+}
+
+Forecast Driver::check() {
+  refuse_while_running("check()");
+  Running running(*this);
+  const Forecast forecast = running.free([&] { return simulation_.check(); });
+  has_forces_ = !has_begun_;
+  return forecast;
+}
+
+void Driver::set(const std::string& pointer, const std::string& value) {
+  refuse_other_threads();
+  if (simulation_.done()) throw Error("the simulation is done; a value that is set now would have no effect");
+  arrays_.let_go();
+  has_begun_ = true, has_forces_ = false;
+  simulation_.set(pointer, Description::parse(value));
+}
+
+Checkpoint Driver::save() {
+  refuse_while_running("save()");
+  Running running(*this);
+  has_begun_ = true;
+  return running.free([&] { return simulation_.save(); });
+}
+
+void Driver::resume(const Checkpoint& checkpoint) {
+  refuse_while_running("resume()");
+  Running running(*this);
+  has_begun_ = true;
+  running.free([&] { simulation_.resume(checkpoint); });
+}
+
+std::size_t Driver::every_time(double seconds) {
+  refuse_while_running("every()");
+  simulation_.every_time(seconds, [this, number = observers_](const World&) { observe(number); });
+  return observers_++;
+}
+
+std::size_t Driver::every_steps(std::uint64_t steps) {
+  refuse_while_running("every()");
+  simulation_.every_steps(steps, [this, number = observers_](const World&) { observe(number); });
+  return observers_++;
+}
+
+std::size_t Driver::at_stage_end() {
+  refuse_while_running("at_stage_end()");
+  // The end of a stage is repeated if a callback ended the run there.
+  const std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
+  simulation_.at_stage_end([this, number = observers_, last = never](const World& world) mutable {
+    if (std::exchange(last, world.step()) != world.step()) observe(number);
+  });
+  return observers_++;
+}
+
+const World& Driver::world() const {
+  refuse_other_threads();
+  return simulation_.world();
+}
+
+const World& Driver::world_with_forces() {
+  refuse_other_threads();
+  if (!has_forces_ && !runs_) {
+    Running running(*this);
+    running.free([&] {
+      if (has_begun_) simulation_.step(0);
+      else simulation_.check();
+    });
+    has_forces_ = true;
+  }
+  return simulation_.world();
+}
+
+bool Driver::done() const {
+  refuse_other_threads();
+  return simulation_.done();
+}
+
+Simulation& Driver::simulation() {
+  refuse_other_threads();
+  return simulation_;
+}
+
+}  // namespace grit::python

@@ -1,0 +1,108 @@
+// The compiled part of the Python module grit. python/grit/simulation.py is what users see.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "checkpoints.hpp"
+#include "driver.hpp"
+#include "errors.hpp"
+#include "plugins/build_facts.hpp"
+#include "world.hpp"
+
+namespace grit::python {
+namespace {
+
+StateRequest state_of(const std::vector<std::string>& names) {
+  StateRequest all;
+  for (const std::string& name : names)
+    all = all | (name == "rotation"       ? BodyState::rotation
+                 : name == "displacement" ? BodyState::displacement
+                                          : BodyState::energy);
+  return all;
+}
+
+/// `json`: whether `source` is a description, instead of the path of one.
+std::unique_ptr<Driver> open(const std::string& source, bool json, unsigned threads, std::vector<std::string> sets,
+                             std::vector<std::string> plugin_path, const std::vector<std::string>& state,
+                             std::optional<Checkpoint> checkpoint) {
+  const SimulationOptions options{.threads = threads,
+                                  .sets = std::move(sets),
+                                  .plugin_path = std::move(plugin_path),
+                                  .state = state_of(state),
+                                  .checkpoint = std::move(checkpoint)};
+  return std::make_unique<Driver>(json ? Simulation(Description::parse(source), options)
+                                       : Simulation::open(source, options));
+}
+
+py::bytes bytes_of(const Checkpoint& checkpoint) {
+  return {reinterpret_cast<const char*>(checkpoint.state.data()), checkpoint.state.size()};
+}
+
+py::tuple pickled(const Checkpoint& checkpoint) {
+  return py::make_tuple(checkpoint.stage, checkpoint.time, checkpoint.step, bytes_of(checkpoint));
+}
+
+Checkpoint unpickled(const py::tuple& all) {
+  const auto state = all[3].cast<std::string_view>();
+  const auto* const first = reinterpret_cast<const std::byte*>(state.data());
+  return {all[0].cast<std::string>(), all[1].cast<double>(), all[2].cast<std::uint64_t>(),
+          std::vector<std::byte>(first, first + state.size())};
+}
+
+}  // namespace
+}  // namespace grit::python
+
+PYBIND11_MODULE(_grit, module) {
+  using namespace grit;
+  using namespace grit::python;
+  translate_errors(py::module_::import("grit.errors"));
+  module.attr("version") = build_facts().version;
+  module.attr("instruction_set") = build_facts().arch;
+
+  py::class_<Checkpoint>(module, "Checkpoint", "The complete state of a simulation. It can be pickled.")
+      .def_readonly("stage", &Checkpoint::stage, "name of the stage that was running")
+      .def_readonly("time", &Checkpoint::time, "simulated [s]")
+      .def_readonly("step", &Checkpoint::step, "since the start of the run")
+      .def("__len__", [](const Checkpoint& checkpoint) { return checkpoint.state.size(); })
+      .def(py::pickle(&pickled, &unpickled));
+
+  py::class_<Forecast>(module, "Forecast", "Size and time step of a run, from its initial state.")
+      .def_readonly("bodies", &Forecast::bodies)
+      .def_readonly("contacts", &Forecast::contacts, "between bodies")
+      .def_readonly("time_step", &Forecast::time_step, "s")
+      .def_readonly("critical_time_step", &Forecast::critical_time_step, "s")
+      .def_readonly("bytes", &Forecast::bytes, "memory of bodies and contacts")
+      .def("__repr__", [](const Forecast& f) {
+        return py::str("<forecast: {} bodies, {} contacts, time step {:.3g} s (critical {:.3g} s), {:.3g} MB>")
+            .format(f.bodies, f.contacts, f.time_step, f.critical_time_step, 1e-6 * static_cast<double>(f.bytes));
+      });
+
+  py::class_<Driver> simulation(module, "Simulation");
+  simulation
+      .def(py::init(&open), py::arg("source"), py::arg("json"), py::arg("threads"), py::arg("sets"),
+           py::arg("plugin_path"), py::arg("state"), py::arg("checkpoint"), py::call_guard<py::gil_scoped_release>())
+      .def("run",
+           [](Driver& driver, const py::object& owner, std::optional<std::uint64_t> steps, std::optional<double> until,
+              bool stage, bool progress) {
+             Goal goal{.stage = stage};
+             if (steps) goal.steps = *steps;
+             if (until) goal.time = *until;
+             driver.run(owner, goal, progress);
+           })
+      .def("check", &Driver::check)
+      .def("set", &Driver::set)
+      .def("save", &Driver::save)
+      .def("resume", &Driver::resume)
+      .def("write",
+           [](Driver& driver, const std::filesystem::path& path) { write(path, driver.simulation(), driver.save()); })
+      .def("read", [](Driver& driver, const std::filesystem::path& path) { return read(path, driver.simulation()); })
+      .def("every_time", &Driver::every_time)
+      .def("every_steps", &Driver::every_steps)
+      .def("at_stage_end", &Driver::at_stage_end);
+  bind_world(simulation);
+}
