@@ -18,6 +18,7 @@ packages=(
   nlohmann-json3-dev
   zlib1g-dev
   libjs-vega                         # draws the curves of a report; embedded in the library
+  pybind11-dev python3-dev python3-numpy # the Python module that drives simulations
 )
 for_tests=(
   libgtest-dev libgmock-dev libbenchmark-dev

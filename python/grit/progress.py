@@ -1,5 +1,6 @@
 """Progress of a run: a line on standard error, or a bar of tqdm in a notebook."""
 
+import functools
 import sys
 import time
 
@@ -10,8 +11,9 @@ def in_notebook():
     return "ipykernel" in sys.modules
 
 
+@functools.lru_cache(maxsize=None)
 def is_seen():
-    """Whether someone watches."""
+    """Whether someone watches. Cached: a call of run() may take a few microseconds."""
     return in_notebook() or sys.stderr.isatty()
 
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "grit/error.hpp"
+#include "simulation/parts.hpp"
 
 namespace grit::python {
 namespace {
@@ -84,6 +85,9 @@ void Driver::report(const Progress& now) {
 
 void Driver::run(const py::object& owner, const Goal& goal, bool shows_progress) {
   refuse_while_running("run()");
+  // The balance begins when it is first read.
+  if (!has_begun_ && simulation_.parts().kernel.state().bodies.energies())
+    static_cast<void>(world_with_forces().energies());
   Running running(*this, owner);
   const World& world = simulation_.world();
   const std::uint64_t furthest = std::numeric_limits<std::uint64_t>::max();
