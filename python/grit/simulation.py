@@ -68,11 +68,12 @@ def _box(low, high):
 
 
 def _with_simulation(function):
-    """The function as one that takes the simulation, if it takes nothing."""
+    """The function as one that takes the simulation, also if it has no parameter without a default."""
     if not callable(function):
         raise TypeError(f"found {function!r}; allowed is a function")
     try:
-        takes = len(inspect.signature(function).parameters) > 0
+        required = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
+        takes = any(one.kind in required and one.default is one.empty for one in inspect.signature(function).parameters.values())
     except (TypeError, ValueError):
         takes = True
     return function if takes else lambda simulation: function()

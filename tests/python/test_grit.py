@@ -26,7 +26,7 @@ except ImportError:
     sys.exit(77)
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
-import grit
+import grit.results
 
 GRIT = None
 
@@ -178,19 +178,19 @@ class Results(unittest.TestCase):
         series.write_bytes(whole[:300])
         looks = []
 
-        def mend(path, stamp=grit._stamp):
+        def mend(path, stamp=grit.results._stamp):
             looks.append(path)
             if len(looks) == 2:
                 series.write_bytes(whole)
             return stamp(path)
 
-        with unittest.mock.patch("grit._stamp", mend):
+        with unittest.mock.patch("grit.results._stamp", mend):
             self.assertEqual(grit.open(target).series["packing/time"].tobytes(), self.run_.series["packing/time"].tobytes())
 
     def test_a_file_that_bears_the_mark_of_its_writer_is_not_believed(self):
         target = self.copy()
         whole, series, run = (target / "series.h5").read_bytes(), target / "series.h5", grit.open(target)
-        with series.open("r+b") as writer, unittest.mock.patch("grit._PATIENCE", 0):
+        with series.open("r+b") as writer, unittest.mock.patch("grit.results._PATIENCE", 0):
             fcntl.fcntl(writer, fcntl.F_OFD_SETLK, struct.pack("hhqqi0q", fcntl.F_WRLCK, 0, 0, 0, 0))
             os.utime(series, (0, 0))  # it has rested for long, as where a writer got no processor
             for cut in (0, 100, 300, len(whole) // 2, len(whole)):
