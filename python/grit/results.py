@@ -367,6 +367,19 @@ class Run:
         self.series = Series(self.folder / "series.h5")
         self.frames = Frames(self.folder / "frames")
 
+    def plot(self, *names, against=None, axes=None):
+        """Draws channels of single numbers, "probe/channel", over time or over the channel `against`, with matplotlib. Returns its axes."""
+        import matplotlib.pyplot
+        axes = axes or matplotlib.pyplot.subplots()[1]
+        for name in names:
+            x = against or f"{name.partition('/')[0]}/time"
+            axes.plot(self.series[x], self.series[name], label=name)
+            axes.set_xlabel(f"{x} [{self.series.units(x)}]")
+            axes.set_ylabel(f"{name} [{self.series.units(name)}]" if len(names) == 1 else "")
+        if len(names) > 1:
+            axes.legend()
+        return axes
+
     def __getattr__(self, name):
         if name.startswith("_") or "json" not in self.__dict__:
             raise AttributeError(name)

@@ -91,6 +91,20 @@ class Results(unittest.TestCase):
         self.assertEqual(self.run_.series.units("packing/time"), "s")
         self.assertEqual(self.run_.series["packing/stress"].shape[1:], (3, 3))
 
+    def test_curves_are_drawn(self):
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("matplotlib is not installed")
+        matplotlib.use("agg")
+        axes = self.run_.plot("packing/kinetic_energy")
+        self.assertEqual(axes.lines[0].get_ydata().tobytes(), self.run_.series["packing/kinetic_energy"].tobytes())
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("packing/time [s]", "packing/kinetic_energy [J]"))
+        axes = self.run_.plot("packing/kinetic_energy", "packing/void_ratio", against="packing/step")
+        self.assertEqual([len(axes.lines), axes.get_xlabel()], [2, "packing/step [1]"])
+        with self.assertRaisesRegex(KeyError, "did you mean 'packing/void_ratio'"):
+            self.run_.plot("packing/void_rati")
+
     def test_a_channel_that_is_not_there(self):
         for name, said in (("packing/void_rati", "did you mean 'packing/void_ratio'"), ("void_ratio", "There are: packing/"), ("packing", "There are:"), ("", "There are:")):
             with self.assertRaises(KeyError) as raised:

@@ -72,8 +72,12 @@ run_page() {
         for candidate in python3 /usr/bin/python3; do
           "$candidate" -c 'import h5py' 2> /dev/null && python=$candidate && break
         done
+        # Simulations need the module of the build folder.
+        local module=${grit%/bin/grit}/python
+        [[ -e $module/grit/_place.py ]] || module=$root/python
+        [[ $module != "$root/python" || $text != *grit.Simulation* ]] || python=''
         if [[ -n $python ]]; then
-          (cd "$place" && PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$root/python "$python" -c "$text") > "$place/.log" 2>&1 || { complain "python failed"; cat "$place/.log"; }
+          (cd "$place" && PYTHONDONTWRITEBYTECODE=1 MPLBACKEND=agg PYTHONPATH=$module "$python" -c "$text") > "$place/.log" 2>&1 || { complain "python failed"; cat "$place/.log"; }
         fi ;;
     esac
   }
