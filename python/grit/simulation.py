@@ -106,7 +106,9 @@ class Simulation:
         self._bodies, self._contacts, self._clumps = Bodies(self._core), Contacts(self._core), Clumps(self._core)
 
     def __repr__(self):
-        return f"<simulation of {self._name}: {self.time:.6g} s, step {self.step}, {'done' if self.done else f'stage {self.stage!r}'}, {len(self.bodies)} bodies>"
+        now = "done" if self.done else f"stage {self.stage!r}" if self.stage else "not begun"
+        bodies = len(self.bodies)
+        return f"<simulation of {self._name}: {self.time:.6g} s, step {self.step}, {now}, {bodies} {'body' if bodies == 1 else 'bodies'}>"
 
     # Running
 

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <span>
 
 #include "grit/error.hpp"
 #include "grit/simulation.hpp"
@@ -112,6 +115,52 @@ TEST(PublicSimulation, SetsAValueFromNowOn) {
   simulation.run();
   EXPECT_EQ(simulation.world().velocities()[0].z, speed);
   EXPECT_NEAR(speed, -g * dt * 99.5, 1e-12);
+}
+
+TEST(PublicSimulation, KeepsArraysBeyondTheirInstant) {
+  std::shared_ptr<const void> memory;
+  std::span<const Row> positions;
+  double then = 0;
+  {
+    Simulation simulation(drop(), options()), other(drop(), options());
+    simulation.step(50);
+    positions = simulation.world().positions(), then = height(simulation);
+    memory = simulation.keep(WorldArray::positions);
+    EXPECT_NE(simulation.world().positions().data(), positions.data()) << "it continues in a copy";
+    EXPECT_EQ(height(simulation), then);
+    simulation.run(), other.run();
+    EXPECT_EQ(height(simulation), height(other)) << "the same bits";
+    EXPECT_LT(height(simulation), then);
+  }
+  EXPECT_EQ(positions[0].z, then);
+}
+
+TEST(PublicSimulation, KeepsEachArray) {
+  SimulationOptions with_state = options();
+  with_state.state = BodyState::rotation | BodyState::displacement;
+  Simulation simulation(drop(), with_state);
+  simulation.step(50);
+  const World& world = simulation.world();
+  // Address of the first element, and whether the copy has the same values.
+  const auto moves = [&](WorldArray array, const auto& read) {
+    const auto before = read();
+    ASSERT_EQ(before.size(), 1u);
+    const auto memory = simulation.keep(array);
+    EXPECT_NE(read().data(), before.data());
+    EXPECT_EQ(std::memcmp(read().data(), before.data(), before.size_bytes()), 0);
+  };
+  moves(WorldArray::ids, [&] { return world.ids(); });
+  moves(WorldArray::positions, [&] { return world.positions(); });
+  moves(WorldArray::velocities, [&] { return world.velocities(); });
+  moves(WorldArray::spins, [&] { return world.spins(); });
+  moves(WorldArray::materials, [&] { return world.materials(); });
+  moves(WorldArray::rotations, [&] { return world.rotations(); });
+  moves(WorldArray::displacements, [&] { return world.displacements(); });
+  moves(WorldArray::forces, [&] { return world.forces(); });
+  moves(WorldArray::moments, [&] { return world.moments(); });
+  for (const WorldArray empty :
+       {WorldArray::clump_of, WorldArray::clumps, WorldArray::departures, WorldArray::contacts})
+    EXPECT_NE(simulation.keep(empty), nullptr);
 }
 
 TEST(PublicSimulation, RefusesWhatCannotBeSet) {
