@@ -380,6 +380,12 @@ class Run:
             axes.legend()
         return axes
 
+    def show(self):
+        """The grains of the last frame as `grit report --png` draws them, as a picture, which notebooks show. Needs the compiled module."""
+        from .picture import Picture
+        from .simulation import _grit
+        return Picture(_grit.picture_of_run(str(self.folder)))
+
     def __getattr__(self, name):
         if name.startswith("_") or "json" not in self.__dict__:
             raise AttributeError(name)

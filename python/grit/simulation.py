@@ -12,6 +12,7 @@ import numpy
 
 from . import compiled, progress as progress_display
 from .errors import DescriptionError, Error, Problem, UnknownName
+from .picture import Picture
 from .recording import Recording
 from .world import Bodies, Cell, Clumps, Contacts, Departures, Energies, Walls
 
@@ -245,6 +246,11 @@ class Simulation:
     kinetic_energy = property(lambda self: self._core.equilibrium()[0], doc="of translation and rotation [J]")
     unbalanced_force = property(lambda self: self._core.equilibrium()[1], doc="mean net force on a body over the mean contact force")
     mean_contact_force = property(lambda self: self._core.equilibrium()[2], doc="mean normal force of all contacts [N]")
+
+    def show(self, view="xz", color="speed"):
+        """The grains as a picture, which notebooks show. view: "xz", "xy", "yz"; color: "speed", "radius", "rotation", "displacement".
+        Unbounded walls are not drawn."""
+        return Picture(self._core.picture(view, color))
 
     @property
     def energies(self):

@@ -11,6 +11,7 @@
 #include "checkpoints.hpp"
 #include "driver.hpp"
 #include "errors.hpp"
+#include "pictures.hpp"
 #include "plugins/build_facts.hpp"
 #include "world.hpp"
 
@@ -104,5 +105,9 @@ PYBIND11_MODULE(_grit, module) {
       .def("every_time", &Driver::every_time)
       .def("every_steps", &Driver::every_steps)
       .def("at_stage_end", &Driver::at_stage_end);
+  simulation.def("picture", [](Driver& driver, const std::string& view, const std::string& color) {
+    return picture_of(driver.world(), view, color);
+  });
   bind_world(simulation);
+  module.def("picture_of_run", [](const std::filesystem::path& folder) { return picture_of(folder); });
 }

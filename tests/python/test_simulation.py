@@ -84,7 +84,9 @@ class SameBits(InAFolder):
     def test_as_the_command_line(self):
         path = self.write(scene())
         subprocess.run([GRIT, "run", path, "--out", self.folder / "out", "--threads", "1", "--quiet", "--no-report"], check=True, stdout=subprocess.DEVNULL)
-        frame = grit.open(self.folder / "out").frames[-1]
+        run = grit.open(self.folder / "out")
+        frame = run.frames[-1]
+        self.assertGreater(run.show().svg.count("<circle"), 5)
         written = b"".join(frame.bodies[name].tobytes() for name in ("position", "velocity", "spin"))
         sim = grit.Simulation(path)
         sim.run()
@@ -645,6 +647,17 @@ class World(unittest.TestCase):
         self.assertEqual(self.sim.cell.periodic, [False, False, False])
         self.assertEqual(self.sim.specimen[0].shape, (3,))
         self.assertTrue(numpy.isclose(self.sim.mean_diameter, 2 * MM))
+
+    def test_pictures(self):
+        picture = self.sim.show("yz", color="radius")
+        self.assertGreater(picture.svg.count("<circle"), 10)
+        self.assertEqual((picture._repr_svg_()[:4], "48 bodies" in picture.svg), ("<svg", True))
+        with tempfile.TemporaryDirectory() as folder:
+            picture.save(pathlib.Path(folder) / "grains.svg")
+            self.assertEqual((pathlib.Path(folder) / "grains.svg").read_text(), picture.svg)
+        for arguments in ({"view": "zz"}, {"color": "taste"}):
+            with self.assertRaisesRegex(grit.Error, "found|allowed|unknown|no "):
+                self.sim.show(**arguments)
 
     def test_clumps_and_departures(self):
         self.assertEqual((len(self.sim.clumps), self.sim.clumps.axes.shape[0], len(self.sim.departures)), (0, 0, 0))
