@@ -655,12 +655,43 @@ class World(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             picture.save(pathlib.Path(folder) / "grains.svg")
             self.assertEqual((pathlib.Path(folder) / "grains.svg").read_text(), picture.svg)
-        for arguments in ({"view": "zz"}, {"color": "taste"}):
-            with self.assertRaisesRegex(grit.Error, "found|allowed|unknown|no "):
+        self.assertNotIn('class="wall"', picture.svg, "the lid is far above")
+        low = scene()
+        low["walls"]["lid"]["corner"][2] = 7 * MM
+        self.assertIn('class="wall"', grit.Simulation(low).show().svg)
+        for arguments, said in (({"view": "zz"}, "found the view 'zz'; allowed are 'xz'"), ({"color": "taste"}, "found the color 'taste'; allowed are")):
+            with self.assertRaisesRegex(grit.Error, said):
                 self.sim.show(**arguments)
 
-    def test_clumps_and_departures(self):
-        self.assertEqual((len(self.sim.clumps), self.sim.clumps.axes.shape[0], len(self.sim.departures)), (0, 0, 0))
+    def test_clumps(self):
+        with_rod = scene()
+        with_rod["bodies"]["rods"] = {"type": "clump", "material": "sand", "shape": {"type": "rod", "count": 3},
+                                      "source": {"type": "list", "bodies": [{"position": [20 * MM, 0, 3 * MM], "radius": "1 mm"}]}}
+        sim = grit.Simulation(with_rod)
+        sim.run(20)
+        clumps, own = sim.clumps, sim.bodies.clump == 0
+        self.assertEqual((len(clumps), own.sum(), set(sim.bodies.group[own])), (1, 3, {"rods"}))
+        self.assertTrue(numpy.allclose(clumps.axes[0] @ clumps.axes[0].T, numpy.eye(3)))
+        self.assertTrue(numpy.allclose(sim.bodies.position[own].mean(axis=0), clumps.centre[0]))
+        self.assertTrue(numpy.allclose(sim.bodies.mass[own], clumps.mass[0]))
+        kept, then = clumps.centre, clumps.centre.copy()
+        sim.run(5)
+        self.assertEqual(kept.tobytes(), then.tobytes())
+        self.assertLess(sim.clumps.centre[0, 2], then[0, 2])
+        self.assertEqual(len(self.sim.clumps), 0)
+
+    def test_departures(self):
+        leaving = scene(domain={"low": [-1, -1, 0.5 * MM], "high": [1, 1, 1], "open_sides": ["-z"]})
+        del leaving["walls"]["floor"]
+        leaving["walls"]["lid"]["corner"][2] = 0.5
+        sim = grit.Simulation(leaving)
+        sim.run()
+        gone = sim.departures
+        self.assertGreater(len(gone), 10)
+        self.assertEqual(len(gone) + len(sim.bodies), 48)
+        self.assertEqual(set(gone.id) & set(sim.bodies.id), set())
+        self.assertLess(gone.position[:, 2].max(), 0.5 * MM)
+        self.assertTrue((numpy.diff(gone.time) >= 0).all())
 
 
 class Package(unittest.TestCase):
