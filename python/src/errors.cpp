@@ -19,11 +19,15 @@ py::object& family() {
   return kept;
 }
 
-/// A class of grit.errors, made of what it is given.
+/// Raises an exception of grit.errors, made of what it is given.
 template <class... Arguments>
 void raise(const char* name, const Arguments&... arguments) {
-  const py::object type = family().attr(name);
-  PyErr_SetObject(type.ptr(), type(arguments...).ptr());
+  try {
+    const py::object type = family().attr(name);
+    PyErr_SetObject(type.ptr(), type(arguments...).ptr());
+  } catch (py::error_already_set& other) {  // such as a Ctrl-C just now
+    other.restore();
+  }
 }
 
 py::list problems_of(const DescriptionError& error) {

@@ -53,7 +53,10 @@ def scene(steps=(300, 200), **changes):
 
 
 def long_scene():
-    return scene((10**9, 1))
+    """It rests for ever."""
+    long = scene((10**9, 1))
+    del long["walls"]["lid"]["motion"]
+    return long
 
 
 def state(sim):
@@ -421,6 +424,18 @@ class Interrupts(unittest.TestCase):
         self.assertGreater(len(sim.contacts) + 1, 0)
         sim.run(5)
         self.assertEqual(sim.step, reached + 5)
+
+
+    def test_while_an_error_is_raised(self):
+        heavy = scene()
+        heavy["stages"][1]["change"] = {"engines": {"gravity": {"acceleration": [0, 0, -1e7]}}}
+        sim = grit.Simulation(heavy)
+
+        def interrupted(*_):
+            raise KeyboardInterrupt
+        with unittest.mock.patch("grit.errors.NumericsError", interrupted):
+            with self.assertRaises(KeyboardInterrupt):
+                sim.run()
 
 
 class Threads(unittest.TestCase):
