@@ -16,6 +16,7 @@
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
+#include "app/runs_folder.hpp"
 #include "app/study_runs.hpp"
 #include "app/submit.hpp"
 #include "format/duration.hpp"
@@ -23,7 +24,6 @@
 #include "format/symbols.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/text_file.hpp"
-#include "output/folder_lock.hpp"
 #include "output/own_files.hpp"
 #include "storage/atomic_file.hpp"
 #include "storage/parsed_json.hpp"
@@ -34,11 +34,6 @@
 
 namespace grit {
 namespace {
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// Progress of the whole study.
 class StudyProgress {
@@ -66,14 +61,6 @@ class StudyProgress {
   ProgressLine line_;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
-
-/// Throws FileError if another process holds the lock.
-void lock_folder(const std::filesystem::path& out, std::optional<FolderLock>& lock) {
-  if (!lock.emplace(out).held())
-    throw FileError(out.string() +
-                    ": another 'grit study', or one of its runs, is writing there; wait for it, or choose another "
-                    "folder with --out");
-}
 
 bool is_own_json(const std::filesystem::path& path) {
   std::string fault;
@@ -135,11 +122,7 @@ void run_missing(const StudyDescription& study, const std::vector<StudyRun>& run
     if (status == static_cast<int>(ExitStatus::done)) return std::exchange(seen, true) || inspect(runs[i]);
     if (status == static_cast<int>(ExitStatus::numerics) || status == static_cast<int>(ExitStatus::interrupted))
       return true;
-    if (trouble.empty() && !interrupted.load())
-      trouble = runs[i].name +
-                (status < 0 ? fmt::format(" was killed by signal {}", -status)
-                            : fmt::format(" ended with status {}", status)) +
-                ":\n" + text_of(log_of(runs[i])) + "\nfrom " + log_of(runs[i]).string();
+    if (trouble.empty() && !interrupted.load()) trouble = failed_run_text(runs[i].name, status, log_of(runs[i]));
     return false;
   };
   run_batch(jobs, options.number("jobs"), interrupted,
@@ -230,7 +213,7 @@ ExitStatus collect(const StudyPlace& place, const Options& options, const Regist
                     ": has no runs of the study; omit --collect to run them, or give the folder that has them with "
                     "--out");
   std::optional<FolderLock> lock;
-  lock_folder(place.out, lock);
+  lock_folder(place.out, "grit study", lock);
   refuse_foreign_files_of_study(place.out, {});
   const StudyResult result = evaluate(place, unusable_runs(place, options, registry));
   return is_evaluated(result) || unfinished(result) > 0 ? ExitStatus::done : ExitStatus::numerics;
@@ -286,7 +269,7 @@ ExitStatus study_command(const std::vector<std::string>& words) {
   if (options.has("only")) return do_only(place, options.get<std::string>("only"), options, *registry);
   if (options.has("collect")) return collect(place, options, *registry);
   std::optional<FolderLock> lock;  // taken before missing runs are listed; but an invalid study creates no folder
-  if (!options.has("dry-run") && std::filesystem::is_directory(out)) lock_folder(out, lock);
+  if (!options.has("dry-run") && std::filesystem::is_directory(out)) lock_folder(out, "grit study", lock);
   std::size_t all = 0;
   TaskLimits estimated;
   std::function<void(const LiveScene&, const Scene&)> measure;
@@ -302,7 +285,7 @@ ExitStatus study_command(const std::vector<std::string>& words) {
   }
   if (!lock) {
     std::filesystem::create_directories(out);
-    lock_folder(out, lock);
+    lock_folder(out, "grit study", lock);
   }
   refuse_foreign_files_of_study(out, runs);
   if (!options.has("dry-run")) {

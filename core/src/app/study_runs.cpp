@@ -16,79 +16,19 @@
 #include <set>
 #include <utility>
 
+#include "app/metric_checks.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
-#include "description/placed_error.hpp"
+#include "app/runs_folder.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
 #include "input/places.hpp"
-#include "kernel/kernel.hpp"
 #include "output/checkpoint.hpp"
-#include "output/own_files.hpp"
 #include "output/plugins_used.hpp"
 #include "output/read_results.hpp"
-#include "output/reference_curve.hpp"
-#include "output/run_facts.hpp"
-#include "plugins/build_facts.hpp"
-#include "run/observer.hpp"
-#include "simulation/prepared_sample.hpp"
 
 namespace grit {
 namespace {
-
-/// The state of a run on disk.
-enum class Progressed {
-  nothing,  ///< no run, or one of another description, another grit or another build of a plugin
-  begun,    ///< interrupted or killed; can be resumed
-  lost,     ///< done, but its series is missing or unreadable
-  ended,    ///< done or failed numerically
-};
-
-/// Identifies plugins by kind, name and checksum, whatever their paths.
-std::set<std::string> builds(const Description& plugins) {
-  std::set<std::string> all;
-  for (const auto& plugin : plugins)
-    all.insert(plugin.value("kind", "") + ' ' + plugin.value("name", "") + ' ' +
-               plugin.value(Description::json_pointer("/build/checksum"), Description()).dump());
-  return all;
-}
-
-/// Whether a run of these facts left a complete checkpoint that this build can resume.
-bool can_resume(const std::filesystem::path& folder, const RunFacts& facts) {
-  try {
-    return last_checkpoint(folder, facts).has_value();
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-bool has_series(const std::filesystem::path& folder) {
-  try {
-    const SeriesFile series(folder);
-    return true;
-  } catch (const FileError&) {
-    return false;
-  }
-}
-
-/// The state of the run of this description with these plugins in a folder.
-Progressed progressed(const std::filesystem::path& folder, const Description& description,
-                      const std::vector<PluginUsed>& plugins) {
-  const auto run = read_run_json(folder);
-  if (!run) return Progressed::nothing;
-  const auto says = [&](const char* pointer) { return run->value(Description::json_pointer(pointer), Description()); };
-  Description used = Description::array();
-  for (const PluginUsed& one : plugins) used.push_back(plugin_facts(one));
-  if (says("/description") != description || says("/grit/revision") != build_facts().revision ||
-      !says("/plugins").is_array() || builds(says("/plugins")) != builds(used))
-    return Progressed::nothing;
-  if (says("/status") == "failed") return Progressed::ended;
-  if (says("/status") == "done") return has_series(folder) ? Progressed::ended : Progressed::lost;
-  // The run.json of a killed run still has the status "running".
-  const bool stopped = says("/status") == "interrupted" || says("/status") == "running";
-  return stopped && can_resume(folder, {.description = description, .plugins = plugins}) ? Progressed::begun
-                                                                                         : Progressed::nothing;
-}
 
 /// Whether a description has all values of an older one; keys that the older one lacks are newer than it.
 bool has_all_of(const Description& now, const Description& then) {
@@ -99,10 +39,6 @@ bool has_all_of(const Description& now, const Description& then) {
   }
   if (now.is_array() && then.is_array()) return std::ranges::equal(now, then, has_all_of);
   return now == then;
-}
-
-std::string lost_series(const std::filesystem::path& folder) {
-  return folder.string() + ": the run is done, but its series.h5 is missing or unreadable";
 }
 
 /// Does the work for a variant. A DescriptionError of a value that the study sets names the study and the variant.
@@ -116,77 +52,6 @@ auto of_variant(const std::filesystem::path& file, const Variant& variant, const
       if (problem.file == "--set") problem.file = file.string() + ", " + variant.name;
     throw DescriptionError(std::move(problems));
   }
-}
-
-std::string pointer_of(const std::string& metric, const std::string& key) {
-  return "/metrics/" + pointer_token(metric) + '/' + key;
-}
-
-/// `; did you mean "color"? Allowed is one of color, view`
-std::string one_of(const std::string& found, const std::vector<std::string>& names) {
-  return did_you_mean(found, names, fmt::format("allowed is one of {}", fmt::join(names, ", ")));
-}
-
-/// Checks probes and reference files of the metrics before any run. Throws DescriptionError.
-void check_metrics(const StudyDescription& study, const Document& written, const SceneDescription& scene) {
-  std::vector<Problem> problems;
-  const auto probes = std::views::keys(scene.probes);
-  for (const auto& [name, metric] : study.metrics) {
-    if (metric.curve) try {
-        read_reference(*metric.curve);
-      } catch (const FileError& error) {
-        problems.push_back(
-            written.problem(pointer_of(name, "curve/file"), missing_file_text(error, metric.curve->file)));
-      }
-    for (const auto& [key, channel] : {std::pair("of", &metric.of), std::pair("against", &metric.against)}) {
-      const std::string probe = channel->substr(0, channel->find('/'));
-      if (probe.empty() || scene.probes.contains(probe)) continue;
-      problems.push_back(written.problem(pointer_of(name, key),
-                                         fmt::format("found the probe \"{}\", which is not in the scene", probe) +
-                                             one_of(probe, {probes.begin(), probes.end()})));
-    }
-  }
-  if (!problems.empty()) throw DescriptionError(std::move(problems));
-}
-
-/// Checks channels, which probes know only once they are bound to a world.
-void check_channels(const StudyDescription& study, const Document& written, const LiveScene& live,
-                    const Registry& registry) try {
-  const SceneDescription& scene = live.now();
-  const Components& components = live.components();
-  const Kernel kernel(scene, components, prepare(live, registry, run_state(scene, components)), 1);
-  std::vector<std::string> all;
-  std::set<std::string> wide;  // several values per sample
-  for (const auto& [name, probe] : scene.probes) {
-    for (const char* channel : {"time", "step"}) all.push_back(name + '/' + channel);
-    for (const Channel& channel : Observer(name, probe, components.probes.at(name), kernel.world()).group().channels) {
-      all.push_back(name + '/' + channel.name);
-      if (std::ranges::any_of(channel.shape, [](std::size_t n) { return n != 1; })) wide.insert(all.back());
-    }
-  }
-  std::vector<Problem> problems;
-  for (const auto& [name, metric] : study.metrics) {
-    const bool profile = std::holds_alternative<ProfileMetric>(metric.what.value());
-    for (const auto& [key, channel] : {std::pair("of", metric.of), std::pair("against", metric.against)}) {
-      if (channel.empty()) continue;
-      const std::string probe = channel.substr(0, channel.find('/') + 1);
-      std::vector<std::string> own;
-      std::ranges::copy_if(all, std::back_inserter(own), [&](const auto& one) { return one.starts_with(probe); });
-      if (std::ranges::find(own, channel) == own.end())
-        problems.push_back(written.problem(
-            pointer_of(name, key),
-            fmt::format("found \"{}\", which is not a channel of the probe", channel) + one_of(channel, own)));
-      else if (!profile && wide.contains(channel))
-        problems.push_back(
-            written.problem(pointer_of(name, key),
-                            fmt::format("found \"{}\", which has several values per sample; allowed is a channel with "
-                                        "one value, or the type profile",
-                                        channel)));
-    }
-  }
-  if (!problems.empty()) throw DescriptionError(std::move(problems));
-} catch (const NumericsError&) {
-  // If the usual settings fail at once, other variants may not.
 }
 
 /// Calls `work(variant, seed, folder within the study)` for every run. Throws UsageError if two have the same folder.
@@ -262,13 +127,14 @@ std::vector<StudyRun> missing_runs(const StudyPlace& place, const Options& optio
   std::string measured;                          // the variant that each_variant has seen last
   const RunProgram program = run_program(options);
   const Document written = Document::load(place.file);
+  const MetricsToCheck metrics{&study.metrics, &written, "/metrics"};
   CheckedRuns line(place, options.has("quiet"));
   for_each_run(place, [&](const Variant& variant, double seed, const std::filesystem::path& within) {
     line.next();
     const auto folder = place.out / within;
     const VariantScene one = scene_of(place, variant, seed, registry);
     const auto live = of_variant(place.file, variant, [&] { return std::make_unique<LiveScene>(one.scene); });
-    check_metrics(study, written, *one.scene.description);
+    check_metrics(metrics, *one.scene.description);
     if (seed == study.seeds.values.front())
       if (const auto [other, is_new] = described.emplace(one.text, variant.name); !is_new)
         throw DescriptionError({written.problem(
@@ -277,7 +143,7 @@ std::vector<StudyRun> missing_runs(const StudyPlace& place, const Options& optio
                                      other->second, variant.name))});
     if (line.count() == 1)
       of_variant(place.file, variant,
-                 [&] { at_its_place(one.scene.document, [&] { check_channels(study, written, *live, registry); }); });
+                 [&] { at_its_place(one.scene.document, [&] { check_channels(metrics, *live, registry); }); });
     const Progressed so_far = progressed(folder, one.description, plugins_used(*one.scene.description, registry));
     if (so_far == Progressed::ended) return;
     if (so_far == Progressed::lost) std::cerr << "grit: " << lost_series(folder) << "; it is run again" << std::endl;
@@ -301,7 +167,7 @@ std::map<std::filesystem::path, std::string> unusable_runs(const StudyPlace& pla
   for_each_run(place, [&](const Variant& variant, double seed, const std::filesystem::path& within) {
     line.next();
     const VariantScene one = scene_of(place, variant, seed, registry);
-    check_metrics(place.study, written, *one.scene.description);
+    check_metrics({&place.study.metrics, &written, "/metrics"}, *one.scene.description);
     const auto folder = place.out / within;
     const auto run = read_run_json(folder);
     if (!run || !run->contains("description")) return;
@@ -312,28 +178,6 @@ std::map<std::filesystem::path, std::string> unusable_runs(const StudyPlace& pla
   });
   line.end();
   return unusable;
-}
-
-void refuse_foreign_run(const std::filesystem::path& folder) {
-  const auto refuse = [](const std::filesystem::path& at, const char* what) {
-    throw FileError(at.string() + what +
-                    ", which this study would replace; move it away, or choose another folder with --out");
-  };
-  std::error_code none;
-  for (const auto& at : {folder.parent_path(), folder})
-    if (std::filesystem::is_symlink(at, none)) refuse(at, ": no study made this symbolic link: it leads to results");
-  if (!holds_a_run(folder)) return;
-  const auto run = read_run_json(folder);
-  const auto commands = run ? run->value("commands", Description()) : Description();
-  const bool is_own = commands.is_array()
-                          ? std::ranges::any_of(commands,
-                                                [](const Description& words) {
-                                                  return words.is_array() &&
-                                                         std::ranges::all_of(words, &Description::is_string) &&
-                                                         is_of_study(words.get<std::vector<std::string>>());
-                                                })
-                          : std::filesystem::exists(folder / "log.txt", none);  // of earlier versions
-  if (!is_own) refuse(folder, ": no study began this run");
 }
 
 ExitStatus do_only(const StudyPlace& place, const std::string& within, const Options& options,

@@ -40,9 +40,6 @@ std::vector<StudyRun> missing_runs(const StudyPlace& place, const Options& optio
 std::map<std::filesystem::path, std::string> unusable_runs(const StudyPlace& place, const Options& options,
                                                            const Registry& registry);
 
-/// Throws FileError if a folder holds a run that no study began, or is a symbolic link: it would be lost.
-void refuse_foreign_run(const std::filesystem::path& folder);
-
 /// Does one run, of any variant and seed: replaces this process by `grit run`, which continues from a checkpoint if
 /// there is one. Returns if the run has ended before. `within`: as in StudyRun.
 ExitStatus do_only(const StudyPlace& place, const std::string& within, const Options& options,

@@ -24,27 +24,17 @@ std::string plain(const Description& value) {
   return text;
 }
 
-/// A pointer, and its location in the study.
-struct Changed {
-  std::string pointer, where;
-};
-
 /// Whether the first pointer lies at or below the second.
 bool covers(const std::string& one, const std::string& other) { return (other + '/').starts_with(one + '/'); }
 
-/// Refuses values that are changed twice: only the last change would count, and levels would not differ.
+/// Levels would not differ if another change followed.
 void check_pointers(const StudyDescription& study, const Complain& complain) {
-  std::vector<Changed> varied;
+  std::vector<ChangedPointer> varied;
   for (const auto& [name, setting] : study.settings)
     for (std::size_t i = 0; i < setting.pointers.size(); ++i)
       varied.push_back({setting.pointers[i], fmt::format("settings/{}/pointers/{}", name, i)});
   varied.push_back({study.seeds.pointer, "seeds/pointer"});
-  for (std::size_t i = 0; i < varied.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      if (covers(varied[i].pointer, varied[k].pointer) || covers(varied[k].pointer, varied[i].pointer))
-        complain(varied[i].where,
-                 fmt::format("{}, of which /{} changes {}", varied[i].pointer, varied[k].where, varied[k].pointer),
-                 "a value that no other setting and no seed changes");
+  refuse_changed_twice(varied, "a value that no other setting and no seed changes", complain);
 }
 
 }  // namespace
@@ -55,18 +45,23 @@ void MeanMetric::declare(Parameters& p) {
 void ValueMetric::declare(Parameters& p) {
   p.add("at", at).required().doc("abscissa at which to evaluate the curve, in the unit of its channel");
 }
-void MetricDescription::declare(Parameters& p) {
+void MetricDescription::declare_channels(Parameters& p) {
   p.choose(what);
   p.add("of", of).required().doc("channel, as PROBE/CHANNEL");
   p.add("against", against)
       .doc(
           "channel of the abscissa; default: time, or the index in a profile. A curve omits points at which the "
           "abscissa does not exceed all values before");
+  p.check([this](const Complain& complain) {
+    check_channel(of, "of", complain), check_channel(against, "against", complain);
+  });
+}
+void MetricDescription::declare(Parameters& p) {
+  declare_channels(p);
   p.add("scale", scale).above(0).doc("divisor of errors; default: largest magnitude of the reference");
   p.add("value", value).doc("reference value; default: result of the finest settings, none in a sweep");
   p.add("curve", curve).doc("reference curve; default: result of the finest settings, none in a sweep");
   p.check([this](const Complain& complain) {
-    check_channel(of, "of", complain), check_channel(against, "against", complain);
     if (value && is_curve()) complain("value", "one value for a curve", "a reference curve, or neither");
     if (value == 0.0 && !scale) complain("value", "0 without a scale", "0 with a scale, by which errors are divided");
     if (curve && !is_curve()) complain("curve", "a curve for one value", "a reference value, or neither");
@@ -197,6 +192,14 @@ void StudyDescription::declare(Parameters& p) {
 bool StudyDescription::compares_with_finest() const {
   return !is_sweep() &&
          std::ranges::any_of(metrics, [](const auto& metric) { return !metric.second.has_own_reference(); });
+}
+
+void refuse_changed_twice(const std::vector<ChangedPointer>& all, std::string_view allowed, const Complain& complain) {
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (covers(all[i].pointer, all[k].pointer) || covers(all[k].pointer, all[i].pointer))
+        complain(all[i].where, fmt::format("{}, of which /{} changes {}", all[i].pointer, all[k].where, all[k].pointer),
+                 allowed);
 }
 
 StudyDescription load_study(const std::filesystem::path& path) {

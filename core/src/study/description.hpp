@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "description/description.hpp"
@@ -67,6 +68,8 @@ struct MetricDescription {
   std::optional<ReferenceCurve> curve;
 
   void declare(Parameters& p);
+  /// Only the metric and its channels, without references.
+  void declare_channels(Parameters& p);
   bool is_curve() const;
   /// Whether the description gives its reference.
   bool has_own_reference() const { return value || curve; }
@@ -108,6 +111,13 @@ struct StudyDescription {
   /// Whether the finest settings are the reference of a metric.
   bool compares_with_finest() const;
 };
+
+/// A pointer at which each run is changed, and where in the file it is written.
+struct ChangedPointer {
+  std::string pointer, where;
+};
+/// Refuses values that are changed twice: only the last change would count.
+void refuse_changed_twice(const std::vector<ChangedPointer>& all, std::string_view allowed, const Complain& complain);
 
 /// Throws FileError and DescriptionError with all problems.
 StudyDescription load_study(const std::filesystem::path& path);

@@ -22,31 +22,6 @@ constexpr std::size_t curve_points = 200;
 /// Fraction of its reference's range that a curve has to cover.
 constexpr double least_reach = 0.9;
 
-Sample read_sample(const StudyDescription& study, double seed, const std::filesystem::path& folder) {
-  Sample sample;
-  sample.seed = seed, sample.status = "missing";
-  const auto run = read_run_json(folder);
-  if (!run) return sample;
-  const auto entry = [&](const char* key) { return run->value(key, Description()); };
-  const auto text = [&](const char* key) { return entry(key).is_string() ? entry(key).get<std::string>() : ""; };
-  const auto number = [&](const char* key) { return entry(key).is_number() ? entry(key).get<double>() : 0.0; };
-  const std::string status = text("status");
-  if (status == "done" || status == "failed") sample.status = status;
-  else if (status == "running" || status == "interrupted") sample.status = "under way";
-  sample.message = text("message");
-  if (const auto revision = run->value(Description::json_pointer("/grit/revision"), Description());
-      revision.is_string())
-    sample.revision = revision.get<std::string>();
-  sample.core_seconds = number("cpu_s"), sample.steps = number("steps"), sample.bodies = number("bodies");
-  if (sample.status != "done") return sample;
-  for (const auto& [name, metric] : study.metrics) try {
-      sample.metrics[name] = take_metric(metric, folder);
-    } catch (const NumericsError& error) {
-      sample.lacks[name] = error.what();
-    }
-  return sample;
-}
-
 bool all_done(const VariantResult& outcome) {
   return std::ranges::all_of(outcome.samples, [](const Sample& sample) { return sample.status == "done"; });
 }
@@ -437,6 +412,32 @@ std::string sweep_csv(const StudyResult& result) {
 
 }  // namespace
 
+Sample read_sample(const std::map<std::string, MetricDescription>& metrics, double seed,
+                   const std::filesystem::path& folder) {
+  Sample sample;
+  sample.seed = seed, sample.status = "missing";
+  const auto run = read_run_json(folder);
+  if (!run) return sample;
+  const auto entry = [&](const char* key) { return run->value(key, Description()); };
+  const auto text = [&](const char* key) { return entry(key).is_string() ? entry(key).get<std::string>() : ""; };
+  const auto number = [&](const char* key) { return entry(key).is_number() ? entry(key).get<double>() : 0.0; };
+  const std::string status = text("status");
+  if (status == "done" || status == "failed") sample.status = status;
+  else if (status == "running" || status == "interrupted") sample.status = "under way";
+  sample.message = text("message");
+  if (const auto revision = run->value(Description::json_pointer("/grit/revision"), Description());
+      revision.is_string())
+    sample.revision = revision.get<std::string>();
+  sample.core_seconds = number("cpu_s"), sample.steps = number("steps"), sample.bodies = number("bodies");
+  if (sample.status != "done") return sample;
+  for (const auto& [name, metric] : metrics) try {
+      sample.metrics[name] = take_metric(metric, folder);
+    } catch (const NumericsError& error) {
+      sample.lacks[name] = error.what();
+    }
+  return sample;
+}
+
 std::size_t StudyResult::count(const char* status) const {
   std::size_t all = 0;
   for (const VariantResult& one : variants)
@@ -467,7 +468,7 @@ StudyResult evaluate_study(StudyDescription study, const std::filesystem::path& 
         outcome.samples.emplace_back().seed = seed, outcome.samples.back().status = "missing";
         continue;
       }
-      const Sample& sample = outcome.samples.emplace_back(read_sample(result.study, seed, own));
+      const Sample& sample = outcome.samples.emplace_back(read_sample(result.study.metrics, seed, own));
       if (!sample.revision.empty()) result.revisions.insert(sample.revision);
       if (const auto run = result.parts.empty() ? read_run_json(own) : std::nullopt;
           run && run->contains("description"))

@@ -33,6 +33,10 @@ struct Sample {
   double particle_steps_per_core_second() const { return core_seconds > 0 ? bodies * steps / core_seconds : 0; }
 };
 
+/// The run in a folder, with its metrics if it is done. Throws FileError if it lacks a channel.
+Sample read_sample(const std::map<std::string, MetricDescription>& metrics, double seed,
+                   const std::filesystem::path& folder);
+
 /// A metric of a variant compared with the reference. Errors are fractions of the metric's scale; NaN if unknown, such
 /// as the scatter of one sample.
 struct Deviation {

@@ -3,12 +3,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <map>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,6 +14,7 @@
 #include "format/symbols.hpp"
 #include "output/colours.hpp"
 #include "output/svg.hpp"
+#include "study/number_with_unit.hpp"
 
 namespace grit {
 namespace {
@@ -57,28 +56,12 @@ class LinearAxis {
   double low_ = 0, high_ = 1, from_, to_;
 };
 
-/// A number and its unit, as in "20 deg".
-struct Quantity {
-  double number = 0;
-  std::string unit;
-};
-
-std::optional<Quantity> quantity(const std::string& label) {
-  Quantity one;
-  const auto [end, error] = std::from_chars(label.data(), label.data() + label.size(), one.number);
-  if (error != std::errc() || !std::isfinite(one.number)) return std::nullopt;
-  one.unit = std::string(end, label.data() + label.size());
-  if (!one.unit.empty() && one.unit.front() != ' ') return std::nullopt;  // a name, such as "3d"
-  one.unit.erase(0, one.unit.find_first_not_of(' '));
-  return one;
-}
-
 /// The abscissae of a setting's levels: their numbers if all have the same unit, else their indices.
 struct LevelAxis {
   explicit LevelAxis(const SettingDescription& setting) {
     bool same = true, positive = true;
     for (std::size_t level = 0; level < setting.levels(); ++level) {
-      const auto one = quantity(setting.label(level));
+      const auto one = number_with_unit(setting.label(level));
       same = same && one && (level == 0 || one->unit == unit);
       if (!same) break;
       unit = one->unit, positive = positive && one->number > 0, at.push_back(one->number);
@@ -177,7 +160,7 @@ std::string sweep_chart(const StudyResult& result, const std::string& metric, co
   draw_ordinate(svg, y, axis_title(metric, shown.unit));
   for (std::size_t level = 0; level < levels.levels(); ++level) {
     svg.line({x(axis.at[level]), plot_top}, {x(axis.at[level]), plot_bottom}, "class=\"grid\"");
-    const auto number = quantity(levels.label(level));
+    const auto number = number_with_unit(levels.label(level));
     svg.text({x(axis.at[level]), plot_bottom + 18},
              axis.unit.empty() || !number ? levels.label(level) : fmt::format("{:g}", number->number), "class=\"m\"");
   }

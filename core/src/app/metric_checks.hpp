@@ -1,0 +1,27 @@
+// Whether a scene has what the metrics of its runs need.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "input/document.hpp"
+#include "plugins/registry.hpp"
+#include "simulation/live_scene.hpp"
+#include "study/description.hpp"
+
+namespace grit {
+
+/// Metrics, and where they are written.
+struct MetricsToCheck {
+  const std::map<std::string, MetricDescription>* metrics;
+  const Document* written;
+  std::string section;  ///< pointer of the object of metrics
+};
+
+/// Checks probes and reference files of the metrics before any run. Throws DescriptionError.
+void check_metrics(const MetricsToCheck& of, const SceneDescription& scene);
+
+/// Checks channels, which probes know only once they are bound to a world. Throws DescriptionError.
+void check_channels(const MetricsToCheck& of, const LiveScene& live, const Registry& registry);
+
+}  // namespace grit

@@ -1,0 +1,46 @@
+// The folder of several runs of one command: what it holds, and who writes there.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grit/description.hpp"
+#include "output/folder_lock.hpp"
+#include "output/run_json.hpp"
+
+namespace grit {
+
+/// The state of a run on disk.
+enum class Progressed {
+  nothing,  ///< no run, or one of another description, another grit or another build of a plugin
+  begun,    ///< interrupted or killed; can be resumed
+  lost,     ///< done, but its series is missing or unreadable
+  ended,    ///< done or failed numerically
+};
+
+/// The state of the run of this description with these plugins in a folder.
+Progressed progressed(const std::filesystem::path& folder, const Description& description,
+                      const std::vector<PluginUsed>& plugins);
+
+/// Whether the series of a run can be read.
+bool has_series(const std::filesystem::path& folder);
+
+/// The message for a run that is done and has none.
+std::string lost_series(const std::filesystem::path& folder);
+
+/// The contents of a text file; empty if it cannot be read.
+std::string text_of(const std::filesystem::path& path);
+
+/// The message for a run whose program failed: its exit status, or minus the signal that killed it, and its log.
+std::string failed_run_text(const std::string& run, int status, const std::filesystem::path& log);
+
+/// Throws FileError if another process holds the lock. `command`: "grit study".
+void lock_folder(const std::filesystem::path& out, const std::string& command, std::optional<FolderLock>& lock);
+
+/// Throws FileError if a folder holds a run that neither a study nor a calibration began, or is a symbolic link: it
+/// would be lost.
+void refuse_foreign_run(const std::filesystem::path& folder);
+
+}  // namespace grit
