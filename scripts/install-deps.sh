@@ -13,6 +13,7 @@ packages=(
   libeigen3-dev
   libhdf5-dev
   libmuparser-dev
+  libnlopt-dev libnlopt-cxx-dev      # optimisation of 'grit calibrate'
   libspdlog-dev
   libudunits2-dev
   nlohmann-json3-dev

@@ -5,7 +5,7 @@
 set -euo pipefail
 
 # A room may include itself and those before it.
-rooms=(format storage plugins description input threads bodies contact motion domain kernel run simulation output study report lint app)
+rooms=(format storage plugins description input threads bodies contact motion domain kernel run simulation output study calibration report lint app)
 
 # sources FOLDER…: the C++ files below those that exist.
 sources() {
@@ -40,8 +40,8 @@ check() {
 
   sources core plugins tests bench | grep -vE '^(core/src/(storage|output)|tests/output)/' | find_in '#include [<"]([a-z0-9/]*/)?(hdf5|H5[A-Za-z]+)(_hl)?\.h' |
     report "HDF5 outside storage/, output/"
-  sources core plugins bench | grep -vE '^core/(include/grit/(description|parameters)\.hpp|src/(storage|input|output|study|report|app)/)' |
-    grep -vE '^plugins/(scenarios/|.*/test_[^/]*$)' | find_in 'nlohmann' | report "JSON outside input/, output/, study/, report/, scenarios"
+  sources core plugins bench | grep -vE '^core/(include/grit/(description|parameters)\.hpp|src/(storage|input|output|study|calibration|report|app)/)' |
+    grep -vE '^plugins/(scenarios/|.*/test_[^/]*$)' | find_in 'nlohmann' | report "JSON outside input/, output/, study/, calibration/, report/, scenarios"
 
   find . -path './build*' -prune -o -type f \( -name CMakeLists.txt -o -name '*.cmake' -o -name 'CMake*Presets.json' \) \
     -exec grep -nHE '' {} + | sed -E 's@^([^:]*:[0-9]+:[^#]*)#.*@\1@' |
@@ -95,9 +95,9 @@ self_test() {
   planted "HDF5 outside storage/, output/" core/src/run/planted.cpp '#include <hdf5.h>'
   planted "HDF5 outside storage/, output/" plugins/probes/planted/planted.cpp '#include <H5Cpp.h>'
   allowed core/src/storage/planted.cpp '#include <hdf5.h>'
-  planted "JSON outside input/, output/, study/, report/, scenarios" core/src/run/planted.cpp '#include <nlohmann/json.hpp>'
-  planted "JSON outside input/, output/, study/, report/, scenarios" core/include/grit/planted.hpp '#include <nlohmann/json_fwd.hpp>'
-  planted "JSON outside input/, output/, study/, report/, scenarios" plugins/probes/planted/planted.cpp '#include <nlohmann/json.hpp>'
+  planted "JSON outside input/, output/, study/, calibration/, report/, scenarios" core/src/run/planted.cpp '#include <nlohmann/json.hpp>'
+  planted "JSON outside input/, output/, study/, calibration/, report/, scenarios" core/include/grit/planted.hpp '#include <nlohmann/json_fwd.hpp>'
+  planted "JSON outside input/, output/, study/, calibration/, report/, scenarios" plugins/probes/planted/planted.cpp '#include <nlohmann/json.hpp>'
   for place in core/src/{input,output,report,app}/planted.cpp plugins/scenarios/planted/planted.cpp tests/planted.cpp; do
     allowed "$place" '#include <nlohmann/json.hpp>'
   done

@@ -1,0 +1,293 @@
+#include "calibration/calibration.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "calibration/calibration_page.hpp"
+#include "grit/error.hpp"
+#include "stand_in.hpp"
+
+namespace grit {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Like a triaxial test: friction and rolling stiffness raise the peak, friction above all the residual stress.
+std::vector<double> strength(const std::vector<double>& values) {
+  const double friction = std::sin(values[0] * 3.14159 / 180), rolling = std::log(values[1]);
+  return {0.10 + 0.15 * friction + 0.02 * rolling,                         // dilation
+          200 * (1.5 + 6 * friction + 0.35 * rolling * (0.5 + friction)),  // peak
+          200 * (1.4 + 4 * friction + 0.10 * rolling)};                    // residual
+}
+
+CalibrationDescription strength_targets(double tolerance_of_scatter) {
+  const auto wanted = strength({18, 0.7});
+  return described({{"a_friction", parameter(5, 40, 27)}, {"b_rolling", parameter(0.05, 5, 0.35, "log")}},
+                   {{"dilation", {.wanted = wanted[0], .tolerance = 0.002 * tolerance_of_scatter}},
+                    {"peak", {.wanted = wanted[1], .tolerance = 8 * tolerance_of_scatter}},
+                    {"residual", {.wanted = wanted[2], .tolerance = 5 * tolerance_of_scatter}}});
+}
+const std::vector<double> strength_scatter{0.004, 16, 10};
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string all;
+  for (const std::string& line : lines) all += line + '\n';
+  return all;
+}
+
+TEST(Calibration, FindsKnownParametersWithinTheirErrors) {
+  int within = 0, met = 0;
+  double trials_used = 0;
+  for (std::uint64_t world = 1; world <= 10; ++world) {
+    const auto calibration = strength_targets(0.5);
+    Trials trials = trials_of(calibration, stand_in(strength, strength_scatter, 4, world));
+    const auto outcome = calibrate(trials, calibration.optimizer);
+    met += is_met(trials, outcome) ? 1 : 0;
+    const Trial& best = trials.all()[outcome.optimum];
+    trials_used += static_cast<double>(trials.all().size());
+    bool all = true;
+    for (const auto& [k, known] : {std::pair(0, 18.0), std::pair(1, 0.7)}) {
+      const double error = outcome.uncertainty.standard_error[k];
+      EXPECT_LT(error, 0.3) << "of the range, in world " << world;
+      all = all && std::abs(best.place[k] - trials.parameters()[static_cast<std::size_t>(k)].place(known)) <= 2 * error;
+    }
+    within += all ? 1 : 0;
+  }
+  EXPECT_GE(within, 9) << "two standard errors";
+  EXPECT_GE(met, 8) << "scatter alone may exceed a misfit of 1";
+  EXPECT_LT(trials_used / 10, 30);
+}
+
+TEST(Calibration, IsExactWithoutScatter) {
+  auto calibration = strength_targets(0.1);
+  calibration.optimizer.resolution = 0.001, calibration.optimizer.trials = 80;
+  for (const char* algorithm : {"bobyqa", "cobyla"}) {
+    calibration.optimizer.algorithm = algorithm;
+    Trials trials = trials_of(calibration, stand_in(strength, {0, 0, 0}, 1, 1));
+    const auto outcome = calibrate(trials, calibration.optimizer);
+    EXPECT_NEAR(trials.all()[outcome.optimum].values[0], 18, 0.3) << algorithm;
+    EXPECT_NEAR(trials.all()[outcome.optimum].values[1], 0.7, 0.06) << algorithm;
+    EXPECT_THAT(verdict(calibration, trials, outcome), Contains(HasSubstr("With one sample the scatter is unknown")));
+  }
+}
+
+TEST(Calibration, StopsWhereABetterFitWouldNotShow) {
+  const auto calibration = strength_targets(0.01);  // far below the scatter
+  int stopped = 0;
+  for (std::uint64_t world = 1; world <= 10; ++world) {
+    Trials trials = trials_of(calibration, stand_in(strength, strength_scatter, 3, world));
+    if (search(trials, calibration.optimizer) != SearchEnd::fits) continue;
+    ++stopped;
+    const Trial& best = trials.all()[trials.best()];
+    const Eigen::VectorXd off =
+        (best.mean - Eigen::Vector3d(trials.observations()[0].wanted, trials.observations()[1].wanted,
+                                     trials.observations()[2].wanted))
+            .cwiseAbs();
+    EXPECT_GT(off[1] / trials.observations()[1].tolerance + off[2] / trials.observations()[2].tolerance, 2)
+        << "not by the tolerance";
+    EXPECT_LE(trials.misfits(best).mean(), 1);
+    // The same without scatter goes on.
+    Trials exact = trials_of(calibration, stand_in(strength, {0, 0, 0}, 3, world));
+    search(exact, calibration.optimizer);
+    EXPECT_GT(exact.all().size(), trials.all().size());
+  }
+  EXPECT_GE(stopped, 3) << "of 10";
+}
+
+TEST(Calibration, SaysThatTrialsAreUsedUp) {
+  auto calibration = strength_targets(0.001);
+  calibration.optimizer.trials = 4;
+  Trials trials = trials_of(calibration, stand_in(strength, {0, 0, 0}, 1, 1));
+  EXPECT_EQ(search(trials, calibration.optimizer), SearchEnd::trials);
+  EXPECT_EQ(trials.all().size(), 4u);
+}
+
+TEST(Calibration, SaysThatNoBetterPlaceIsFoundForTargetsThatContradict) {
+  const auto calibration =
+      described({{"a", parameter(0, 10, 3)}, {"b", parameter(0, 10, 3)}},
+                {{"one", {.wanted = 10, .tolerance = 0.1}}, {"two", {.wanted = 4, .tolerance = 0.1}}});
+  Trials trials = trials_of(calibration, stand_in(
+                                             [](const std::vector<double>& v) {
+                                               return std::vector<double>{v[0] + v[1], v[0] + v[1]};
+                                             },
+                                             {0.01, 0.01}, 2, 1));
+  const auto outcome = calibrate(trials, calibration.optimizer);
+  EXPECT_EQ(outcome.end, SearchEnd::resolution);
+  EXPECT_THAT(joined(verdict(calibration, trials, outcome)),
+              AllOf(HasSubstr("Not all targets are met. The optimum misses one by "),
+                    HasSubstr("its steps are below the resolution")));
+}
+
+TEST(Calibration, ReportsParametersThatActAsAProductOnly) {
+  const Formulas product = [](const std::vector<double>& v) {
+    return std::vector<double>{100 * v[0] * v[1], 30 * std::sqrt(v[0] * v[1])};
+  };
+  for (std::uint64_t world = 1; world <= 5; ++world) {
+    const auto calibration =
+        described({{"stiffness", parameter(0.1, 10, 1, "log")}, {"width", parameter(0.1, 10, 1.5, "log")}},
+                  {{"force", {.wanted = 300, .tolerance = 5}}, {"root", {.wanted = 52, .tolerance = 1}}});
+    Trials trials = trials_of(calibration, stand_in(product, {10, 1}, 3, world));
+    const auto outcome = calibrate(trials, calibration.optimizer);
+    const auto& values = trials.all()[outcome.optimum].values;
+    EXPECT_NEAR(values[0] * values[1], 3, 0.6) << world;
+    EXPECT_THAT(joined(verdict(calibration, trials, outcome)),
+                ContainsRegex("The targets cannot tell stiffness and width apart: raising (stiffness and lowering width"
+                              "|width and lowering stiffness) together "))
+        << world;
+    EXPECT_THAT(joined(parameter_texts(calibration, trials, outcome)),
+                AllOf(ContainsRegex("stiffness: .* not determined"), ContainsRegex("width: .* not determined")));
+    EXPECT_LT(outcome.uncertainty.correlation(0, 1), -0.9);
+  }
+}
+
+TEST(Calibration, ReportsAParameterWithoutEffect) {
+  const auto calibration = described({{"friction", parameter(5, 40, 27)}, {"idle", parameter(0, 1, 0.5)}},
+                                     {{"peak", {.wanted = 700, .tolerance = 5}}});
+  Trials trials =
+      trials_of(calibration,
+                stand_in([](const std::vector<double>& v) { return std::vector<double>{400 + 15 * v[0]}; }, {8}, 3, 2));
+  const auto outcome = calibrate(trials, calibration.optimizer);
+  EXPECT_NEAR(trials.all()[outcome.optimum].values[0], 20, 1.5);
+  EXPECT_THAT(joined(verdict(calibration, trials, outcome)), HasSubstr("The targets do not determine idle: "));
+  EXPECT_TRUE(std::isfinite(outcome.uncertainty.standard_error[0]));
+  EXPECT_FALSE(std::isfinite(outcome.uncertainty.standard_error[1]));
+}
+
+TEST(Calibration, ReportsAParameterAtABound) {
+  const auto calibration = described({{"friction", parameter(5, 15, 8)}}, {{"peak", {.wanted = 700, .tolerance = 5}}});
+  Trials trials =
+      trials_of(calibration,
+                stand_in([](const std::vector<double>& v) { return std::vector<double>{400 + 15 * v[0]}; }, {8}, 3, 2));
+  const auto outcome = calibrate(trials, calibration.optimizer);
+  EXPECT_EQ(trials.all()[outcome.optimum].values[0], 15);
+  EXPECT_THAT(joined(verdict(calibration, trials, outcome)), HasSubstr("friction is at the upper end of its range"));
+}
+
+// The error of a linear model with known scatter follows from the slope alone.
+TEST(Calibration, HasTheErrorOfAClosedForm) {
+  const double slope = 15, scatter = 6, tolerance = 4;
+  const auto calibration =
+      described({{"friction", parameter(5, 40, 27)}}, {{"peak", {.wanted = 700, .tolerance = tolerance}}});
+  Trials trials = trials_of(
+      calibration, stand_in([&](const std::vector<double>& v) { return std::vector<double>{400 + slope * v[0]}; },
+                            {scatter}, 50, 3));
+  const auto outcome = calibrate(trials, calibration.optimizer);
+  const double expected = std::sqrt(tolerance * tolerance + scatter * scatter / 50) / slope;
+  EXPECT_NEAR(trials.parameters()[0].error_of_value(20, outcome.uncertainty.standard_error[0]), expected,
+              0.05 * expected);
+  EXPECT_NEAR(std::sqrt(trials.variance()[0]), scatter, 0.1 * scatter) << "pooled";
+}
+
+TEST(Calibration, ContinuesToTheSameOptimum) {
+  const auto calibration = strength_targets(0.5);
+  const auto runs = stand_in(strength, strength_scatter, 3, 7);
+  Trials whole = trials_of(calibration, runs);
+  const auto outcome = calibrate(whole, calibration.optimizer);
+  ASSERT_GT(whole.all().size(), 5u);
+
+  std::map<std::vector<double>, std::vector<TrialSample>> kept;
+  std::size_t left = 5, done = 0;
+  const EvaluateTrial interrupted = [&](std::size_t number, const std::vector<double>& values) {
+    if (const auto known = kept.find(values); known != kept.end()) return known->second;
+    if (left-- == 0) throw std::runtime_error("interrupted");
+    ++done;
+    return kept[values] = runs(number, values);
+  };
+  Trials first = trials_of(calibration, interrupted);
+  EXPECT_THROW(calibrate(first, calibration.optimizer), std::runtime_error);
+  EXPECT_EQ(first.all().size(), 5u);
+  left = 1000;
+  Trials second = trials_of(calibration, interrupted);
+  const auto again = calibrate(second, calibration.optimizer);
+  EXPECT_EQ(again.optimum, outcome.optimum);
+  EXPECT_EQ(second.all()[again.optimum].values, whole.all()[outcome.optimum].values);
+  EXPECT_EQ(done, whole.all().size()) << "nothing is run twice";
+}
+
+TEST(Calibration, TakesAFailedTrialForABadOne) {
+  const auto calibration = strength_targets(2);
+  const auto runs = stand_in(strength, strength_scatter, 3, 4);
+  Trials trials = trials_of(calibration, [&](std::size_t number, const std::vector<double>& values) {
+    auto samples = runs(number, values);
+    if (values[0] > 30) samples[1].found.clear(), samples[1].failure = "an overlap is too deep";
+    if (values[1] > 3) samples[2].found[0] = std::numeric_limits<double>::quiet_NaN();
+    return samples;
+  });
+  // Starts beside the places that fail.
+  const auto outcome = calibrate(trials, calibration.optimizer);
+  EXPECT_TRUE(is_met(trials, outcome));
+  const auto failed = std::ranges::find_if(trials.all(), &Trial::failed);
+  ASSERT_NE(failed, trials.all().end());
+  EXPECT_EQ(failed->failure(), "seed 2: an overlap is too deep");
+  EXPECT_EQ(trials.misfit(*failed), std::numeric_limits<double>::infinity());
+  EXPECT_THAT(joined(verdict(calibration, trials, outcome)), ContainsRegex("[0-9]+ of [0-9]+ trials failed"));
+  EXPECT_THAT(calibration_page(calibration, trials, outcome), HasSubstr("an overlap is too deep"));
+}
+
+TEST(Calibration, CountsAResultThatIsNoNumberAsFailed) {
+  const auto calibration = strength_targets(0.5);
+  Trials trials = trials_of(calibration, stand_in(
+                                             [](const std::vector<double>&) {
+                                               return std::vector<double>{1, std::nan(""), 1};
+                                             },
+                                             {0, 0, 0}, 2, 1));
+  EXPECT_TRUE(trials.all()[trials.at(Eigen::Vector2d(0.5, 0.5), TrialPurpose::search)].failed());
+  EXPECT_EQ(trials.all()[0].failure(), "seed 1: a target has no finite value");
+}
+
+TEST(Calibration, EndsWithAnErrorIfAllTrialsFail) {
+  auto calibration = strength_targets(0.5);
+  calibration.optimizer.trials = 30;
+  Trials trials = trials_of(calibration, [](std::size_t, const std::vector<double>&) {
+    return std::vector<TrialSample>{{.seed = 1, .found = {}, .failure = "a grain left", .core_seconds = 1}};
+  });
+  try {
+    calibrate(trials, calibration.optimizer);
+    FAIL();
+  } catch (const NumericsError& error) {
+    EXPECT_THAT(error.what(), ContainsRegex("all [0-9]+ trials failed, the first with seed 1: a grain left"));
+  }
+  EXPECT_LE(trials.all().size(), 30u);
+}
+
+TEST(Calibration, SearchesGloballyWithTheSamePopulation) {
+  auto calibration = strength_targets(1);
+  calibration.optimizer.algorithm = "crs", calibration.optimizer.trials = 200;
+  std::vector<double> found;
+  for (int i = 0; i < 2; ++i) {
+    Trials trials = trials_of(calibration, stand_in(strength, {0, 0, 0}, 1, 1));
+    EXPECT_EQ(search(trials, calibration.optimizer), SearchEnd::fits);
+    found.push_back(trials.all()[trials.best()].values[0]);
+  }
+  EXPECT_EQ(found[0], found[1]);
+}
+
+TEST(Calibration, IsWrittenWithAllTrials) {
+  const auto calibration = strength_targets(0.5);
+  Trials trials = trials_of(calibration, stand_in(strength, strength_scatter, 3, 1));
+  const auto outcome = calibrate(trials, calibration.optimizer);
+  const Description json = to_json(calibration, {{"base", "sand.json"}}, trials, &outcome);
+  EXPECT_EQ(json.at("trials").size(), trials.all().size());
+  EXPECT_EQ(json.at("trials")[0].at("values"), Description({27.0, 0.35}));
+  EXPECT_EQ(json.at("trials")[0].at("samples").size(), 3u);
+  const Description& optimum = json.at("optimum");
+  EXPECT_EQ(optimum.at("trial"), outcome.optimum);
+  EXPECT_EQ(optimum.at("met"), true);
+  EXPECT_NEAR(optimum.at("correlation")[0][0].get<double>(), 1, 1e-12);
+  EXPECT_EQ(optimum.at("jacobian").size(), 3u);
+  EXPECT_NEAR(json.at("core_hours").get<double>(), 6.0 * static_cast<double>(trials.all().size()) / 3600, 1e-12);
+  EXPECT_TRUE(to_json(calibration, {}, trials, nullptr).at("optimum").is_null());
+  const std::string page = calibration_page(calibration, trials, outcome);
+  EXPECT_THAT(
+      page, AllOf(HasSubstr("All targets are met"), HasSubstr("b_rolling"), HasSubstr("<svg"), Not(HasSubstr("nan"))));
+}
+
+}  // namespace
+}  // namespace grit
