@@ -33,8 +33,8 @@ page() { printf '# %s\nWritten by `scripts/reference.sh` from what `grit describ
   tables $(names 'sections of a description')
 } > "$pages/sections.md"
 {
-  page "Files for 'grit study'"
-  tables $(names "files for 'grit study'")
+  page "Files for 'grit study' and 'grit calibrate'"
+  tables $(names "files for 'grit study' and 'grit calibrate'")
 } > "$pages/study.md"
 for kind in body contact engine geometry probe scenario; do
   {

@@ -34,6 +34,7 @@ ExitStatus schema_command(const std::vector<std::string>& words);
 ExitStatus plugins_command(const std::vector<std::string>& words);
 ExitStatus describe_command(const std::vector<std::string>& words);
 ExitStatus study_command(const std::vector<std::string>& words);
+ExitStatus calibrate_command(const std::vector<std::string>& words);
 ExitStatus advise_command(const std::vector<std::string>& words);
 ExitStatus report_command(const std::vector<std::string>& words);
 

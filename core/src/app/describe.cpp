@@ -8,6 +8,7 @@
 
 #include "app/options.hpp"
 #include "app/reference.hpp"
+#include "calibration/description.hpp"
 #include "description/description.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
@@ -62,11 +63,12 @@ std::vector<SectionType> types_of(const Parameters& all) {
   return types;
 }
 
-/// The reference of files for `grit study`.
-std::string study_text() {
-  StudyDescription study;
+/// The reference of files for a command: StudyDescription, CalibrationDescription.
+template <class File>
+std::string file_text() {
+  File file;
   Parameters parameters;
-  study.declare(parameters);
+  file.declare(parameters);
   return reference_text(parameters);
 }
 
@@ -74,7 +76,7 @@ void print_names(const Parameters& all, const Registry& registry) {
   std::cout << "sections of a description\n";
   for (const Parameter& section : all.entries())
     std::cout << "  " << std::left << std::setw(20) << section.name() << section.doc() << '\n';
-  std::cout << "\nfiles for 'grit study'\n  study\n";
+  std::cout << "\nfiles for 'grit study' and 'grit calibrate'\n  study\n  calibration\n";
   std::string kind;
   for (const Installed& one : registry.installed()) {
     if (kind != one.kind) std::cout << '\n' << (kind = one.kind) << '\n';
@@ -100,11 +102,11 @@ ExitStatus describe_command(const std::vector<std::string>& words) {
     std::cout << section;
     return ExitStatus::done;
   }
-  if (name == "study") {
-    std::cout << study_text();
+  if (name == "study" || name == "calibration") {
+    std::cout << (name == "study" ? file_text<StudyDescription>() : file_text<CalibrationDescription>());
     return ExitStatus::done;
   }
-  std::vector<std::string> names{"study"};
+  std::vector<std::string> names{"study", "calibration"};
   for (const Parameter& section : all.entries()) names.push_back(section.name());
   for (const Installed& one : registry->installed()) {
     if (one.name == name) {

@@ -21,7 +21,7 @@
 namespace grit {
 
 std::span<const Command> commands() {
-  static constexpr std::array<Command, 9> all{{
+  static constexpr std::array<Command, 10> all{{
       {"run", "FILE…", "Run descriptions, one after the other. Ctrl-C saves the results and stops.", run_command},
       {"check", "FILE…", "Validate a description; report time step, memory, frames and run time.", check_command},
       {"expand", "FILE", "Print a description with inheritance, --set and scenario resolved.", expand_command},
@@ -30,6 +30,8 @@ std::span<const Command> commands() {
       {"describe", "[NAME]", "Print the parameters of a section of a description, or of a component.",
        describe_command},
       {"study", "STUDY", "Run a sweep, or a study of speed against accuracy; plot its metrics.", study_command},
+      {"calibrate", "FILE", "Find parameters of a description for which its runs meet targets; with their errors.",
+       calibrate_command},
       {"advise", "FILE", "Suggest cheaper settings within a tolerance, from the results of a study.", advise_command},
       {"report", "DIR…", "Write a page with curves and grains of one run, or of several side by side.", report_command},
   }};
