@@ -14,6 +14,7 @@
 #include "bodies/clump_body.hpp"
 #include "bodies/make_bodies.hpp"
 #include "bodies/sphere_body.hpp"
+#include "calibration/description.hpp"
 #include "input/scene.hpp"
 #include "input/schema.hpp"
 #include "motion/builtin.hpp"
@@ -78,17 +79,20 @@ TEST_P(Sims, AreRefusedByBothWithAWrongKey) {
   std::filesystem::remove(file);
 }
 
-/// Descriptions, or studies of some.
-std::vector<std::filesystem::path> files(bool studies) {
+/// Files of the folder "studies" or "calibrations", or the descriptions, which are in all others.
+std::vector<std::filesystem::path> files(const std::string& kind = "") {
   std::vector<std::filesystem::path> all;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(sims_folder))
-    if (entry.path().extension() == ".json" && (entry.path().parent_path().filename() == "studies") == studies)
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(sims_folder)) {
+    const std::string folder = entry.path().parent_path().filename();
+    const bool is_special = folder == "studies" || folder == "calibrations";
+    if (entry.path().extension() == ".json" && (kind.empty() ? !is_special : folder == kind))
       all.push_back(entry.path());
+  }
   std::ranges::sort(all);
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Sims, testing::ValuesIn(files(false)),
+INSTANTIATE_TEST_SUITE_P(All, Sims, testing::ValuesIn(files()),
                          [](const auto& info) { return Sims::name_of(info.param); });
 
 /// Nobody listens.
@@ -127,7 +131,7 @@ TEST_P(QuickSims, RunAWhile) {
 }
 
 std::vector<std::filesystem::path> quick_files() {
-  auto all = files(false);
+  auto all = files();
   std::erase_if(all, [](const auto& file) { return !file.stem().string().starts_with("quick"); });
   return all;
 }
@@ -282,7 +286,21 @@ TEST_P(Studies, AskForRunsThatTheKernelTakes) {
         << variant.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Studies, testing::ValuesIn(files(true)),
+class Calibrations : public testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(Calibrations, BeginWithARunThatTheKernelTakes) {
+  const CalibrationDescription calibration = load_calibration(GetParam());
+  std::vector<double> first;
+  for (const auto& [name, parameter] : calibration.parameters) first.push_back(parameter.first_value());
+  auto sets = sets_of(calibration, first);
+  sets.push_back(calibration.samples.pointer + "=1");
+  EXPECT_NO_THROW(LiveScene(load_scene(calibration.base, sets, registry())));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Calibrations, testing::ValuesIn(files("calibrations")),
+                         [](const auto& info) { return Sims::name_of(info.param); });
+
+INSTANTIATE_TEST_SUITE_P(All, Studies, testing::ValuesIn(files("studies")),
                          [](const auto& info) { return Sims::name_of(info.param); });
 
 }  // namespace
