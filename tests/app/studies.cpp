@@ -57,7 +57,7 @@ TEST_F(Studies, AreRunEvaluatedAndNotRunAgain) {
                                HasSubstr("page: results/study/study.html")));
   const auto all = result();
   ASSERT_EQ(all.at("variants").size(), 4u);
-  const auto error = [&](int variant) {
+  const auto error = [&](std::size_t variant) {
     return all.at("variants")[variant].at("metrics").at("energy").at("error").get<double>();
   };
   EXPECT_EQ(all.at("parts"),
@@ -238,7 +238,7 @@ TEST_F(Studies, LocateAProbeThatDoesNotFitTheScene) {
   scene["probes"]["force"] = {{"type", "walls"}, {"every_steps", 10}, {"walls", {"plat"}}};
   folder.write("two.json", scene.dump(2));
   const std::string text = text_of(folder / "two.json");
-  const auto line = 1 + std::count(text.begin(), text.begin() + text.find("\"walls\": ["), '\n');
+  const auto line = 1 + std::ranges::count(text.substr(0, text.find("\"walls\": [")), '\n');
   const auto outcome = grit({"study", "study.json"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("two.json:" + std::to_string(line) +

@@ -32,6 +32,12 @@ FakeWorld simple_cubic(int n, double d, const Vec3& push) {
   return world;
 }
 
+/// One to `most` along each axis.
+Vec3 whole_periods(Random& random, std::uint64_t most) {
+  const auto number = [&] { return static_cast<double>(1 + random.below(most)); };
+  return Vec3(number(), number(), number());
+}
+
 void expect_near(const Mat3& found, const Mat3& wanted, double relative = 1e-12) {
   EXPECT_LT((found - wanted).norm(), relative * wanted.norm()) << found << "\ninstead of\n" << wanted;
 }
@@ -43,7 +49,7 @@ TEST(VoidRatio, OfSimpleCubicPackingInAnyShiftedBox) {
   for (int i = 0; i < 50; ++i) {
     // Whole periods of the lattice at any position, also outside the cell and larger than it.
     const Vec3 low(8 * random.uniform() - 4, 8 * random.uniform() - 4, 8 * random.uniform() - 4);
-    const Vec3 size(0.5 * (1 + random.below(4)), 0.5 * (1 + random.below(4)), 0.5 * (1 + random.below(4)));
+    const Vec3 size = 0.5 * whole_periods(random, 4);
     EXPECT_NEAR(void_ratio(world, {low, low + size}), exact, 1e-11);
   }
 }
@@ -78,7 +84,7 @@ TEST(MeanStress, OfALatticeIsForceOverTheAreaOfOneGrain) {
   Random random(2);
   for (int i = 0; i < 50; ++i) {
     const Vec3 low(8 * random.uniform() - 4, 8 * random.uniform() - 4, 8 * random.uniform() - 4);
-    const Vec3 size(d * (1 + random.below(5)), d * (1 + random.below(5)), d * (1 + random.below(5)));
+    const Vec3 size = d * whole_periods(random, 5);
     expect_near(mean_stress(world, {low, low + size}), exact, 1e-11);
   }
   // Boxes whose faces contain whole planes of branches do not count them twice.

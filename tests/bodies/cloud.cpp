@@ -27,7 +27,7 @@ double deepest_overlap(const std::vector<Row>& grains, const Cell& cell) {
         bool there = true;
         for (int k = 0; k < 3; ++k) {
           if (turns[k] == 0) continue;
-          there = there && cell.periodic[k];
+          there = there && cell.periodic[as_index(k)];
           between[k] += turns[k] * (cell.high[k] - cell.low[k]);
         }
         const double reach = grains[i].w + grains[j].w;

@@ -60,8 +60,8 @@ std::vector<Vec3> l_of_triangles() {
     const Vec3 &a = outline[k], &b = outline[(k + 1) % outline.size()];
     for (const Vec3& corner : {a, Vec3(a + up), b, b, Vec3(a + up), Vec3(b + up)}) corners.push_back(corner);
   }
-  for (const std::size_t k : {0, 1, 3, 1, 2, 3, 0, 3, 5, 3, 4, 5}) corners.push_back(outline[k]);
-  for (const std::size_t k : {3, 1, 0, 3, 2, 1, 5, 3, 0, 5, 4, 3}) corners.push_back(outline[k] + up);
+  for (const int k : {0, 1, 3, 1, 2, 3, 0, 3, 5, 3, 4, 5}) corners.push_back(outline[as_index(k)]);
+  for (const int k : {3, 1, 0, 3, 2, 1, 5, 3, 0, 5, 4, 3}) corners.push_back(outline[as_index(k)] + up);
   return corners;
 }
 

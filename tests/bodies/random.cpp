@@ -107,10 +107,10 @@ TEST(Random, ShufflesIntoAllOrdersEquallyOften) {
   for (int i = 0; i < 240'000; ++i) {
     std::array<int, 4> items{0, 1, 2, 3};
     random.shuffle(items);
-    int order = 0;
-    for (int a = 0; a < 4; ++a)
-      order = order * (4 - a) + static_cast<int>(std::count_if(items.begin() + a, items.end(),
-                                                               [&](int other) { return other < items[a]; }));
+    std::size_t order = 0;
+    for (std::size_t a = 0; a < 4; ++a)
+      order = order * (4 - a) + static_cast<std::size_t>(std::count_if(items.begin() + a, items.end(),
+                                                                       [&](int other) { return other < items[a]; }));
     ++found.at(order);
   }
   expect_even(found);

@@ -48,7 +48,7 @@ TEST(Sizes, UniformIsEvenByNumber) {
 }
 
 TEST(Sizes, LinearIsEvenByMass) {
-  for (const std::size_t count : {100, 1000, 100'000}) {
+  for (const std::size_t count : {100u, 1000u, 100'000u}) {
     Random random(1);
     const auto sample = draw_diameters(LinearSizes{0.25e-3, 0.75e-3}, count, random);
     ASSERT_EQ(sample.size(), count);
@@ -60,7 +60,7 @@ TEST(Sizes, LinearIsEvenByMass) {
 TEST(Sizes, SieveCurveByMassIsMet) {
   // With an empty fraction in the middle, and one to ten in size.
   const SieveSizes sieve{{0.1e-3, 0.2e-3, 0.4e-3, 0.5e-3, 1e-3}, {0, 0.3, 0.3, 0.8, 1}};
-  for (const std::size_t count : {1000, 10'000, 100'000}) {
+  for (const std::size_t count : {1000u, 10'000u, 100'000u}) {
     Random random(1);
     const auto sample = draw_diameters(sieve, count, random);
     EXPECT_LT(curve_error(sample, 3, [&](double d) { return line(sieve.diameters, sieve.passing, d); }),

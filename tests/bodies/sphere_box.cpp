@@ -135,7 +135,7 @@ TEST(SphereBox, AgreesWithSlicesWhereARootNearlyVanishes) {
     // Corners and edges slightly inside or outside the sphere.
     const double hair = std::pow(10, -16 + 12 * random.uniform()) * (random.below(2) == 0 ? 1 : -1);
     Vec3 low = anywhere(random, 1).cwiseAbs();
-    if (random.below(2) == 0) low[random.below(3)] = 0;
+    if (random.below(2) == 0) low[static_cast<Eigen::Index>(random.below(3))] = 0;
     low *= (1 + hair) / low.norm();
     for (int k = 0; k < 3; ++k)
       if (random.below(3) == 0) low[k] = -low[k];

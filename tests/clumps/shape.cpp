@@ -178,13 +178,13 @@ TEST(ClumpShape, AsymmetricIsThatOfTheReference) {
 struct Unequal {
   Unequal(double r, double d) {
     const double cut = (d * d + 1 - r * r) / (2 * d);
-    // The part of a ball beyond a plane at −h from its centre; axis: normal of the plane.
-    const auto add = [&](double radius, double h, double centre, double side) {
+    // The part of a ball, whose centre is at x = `at`, beyond a plane at −h from there; axis: normal of the plane.
+    const auto add = [&](double radius, double h, double at, double side) {
       const auto power = [&](int n) { return (std::pow(radius, n + 1) - std::pow(-h, n + 1)) / (n + 1); };  // ∫ xⁿ
       const auto area = [&](int n) { return pi * (radius * radius * power(n) - power(n + 2)); };  // ∫ xⁿ A
       volume += area(0);
-      first += centre * area(0) + side * area(1);
-      second += centre * centre * area(0) + 2 * centre * side * area(1) + area(2);
+      first += at * area(0) + side * area(1);
+      second += at * at * area(0) + 2 * at * side * area(1) + area(2);
       const double r4 = std::pow(radius, 4);
       along += pi / 2 * (r4 * power(0) - 2 * radius * radius * power(2) + power(4));
     };
@@ -207,7 +207,7 @@ TEST(ClumpShape, EstimatesItsError) {
     for (const int rays : {300, 501}) {
       const ClumpShape shape = make_clump_shape(balls, rays);
       const double size = (1 + d + r) / 2;
-      const auto& large = shape.spheres[trial % 2];
+      const auto& large = shape.spheres[as_index(trial % 2)];
       const double mass = shape.volume * std::pow(size, 3) / known.volume - 1;
       const double centre = (shape.axes * xyz(large)).dot(along) + known.centre / size;
       const Vec3 inertia = shape.inertia * size * size;

@@ -158,7 +158,8 @@ class Faults {
   }
 
   std::string below_, log_;
-  int call_ = calls, error_ = 0, signal_ = 0;
+  std::size_t call_ = calls;
+  int error_ = 0, signal_ = 0;
   std::uint64_t number_ = 0;
   bool on_ = false;
   std::array<std::atomic<std::uint64_t>, calls> counts_{};

@@ -185,13 +185,13 @@ struct FrameExportsOfResumedRuns : testing::Test {
   std::vector<double> times(const char* name) const {
     ptree xml;
     read_xml((folder / name).string(), xml);
-    std::vector<double> all;
+    std::vector<double> found;
     for (const auto& [tag, one] : xml.get_child("VTKFile.Collection")) {
       if (tag != "DataSet") continue;
       EXPECT_TRUE(has(one.get<std::string>("<xmlattr>.file")));
-      all.push_back(one.get<double>("<xmlattr>.timestep"));
+      found.push_back(one.get<double>("<xmlattr>.timestep"));
     }
-    return all;
+    return found;
   }
   /// Whether there is a frame of this number, in all formats or in none.
   bool has_frame(const std::string& number) const {

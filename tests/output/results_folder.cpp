@@ -364,7 +364,7 @@ TEST(ResultsFolder, KeepsItsLastTwoCheckpointsUntilItIsDone) {
   ResultsFolder results(wanted);
   results.begin(world, probes);
   const auto step_of = [&](const char* file) { return read_checkpoint(folder / file, wanted.facts).step; };
-  for (const std::uint64_t step : {10, 20, 30}) results.checkpoint({"stage", 0, step, {}});
+  for (const std::uint64_t step : {10u, 20u, 30u}) results.checkpoint({"stage", 0, step, {}});
   results.final_state({"stage", 0, 40, {}});
   EXPECT_EQ(step_of("run/checkpoint.h5"), 30u);
   EXPECT_EQ(step_of("run/checkpoint-previous.h5"), 20u);

@@ -241,8 +241,8 @@ TEST(ClosedCycle, LinearSpringsForgetASquareInEitherOrder) {
 // square that is sheared first turns F into r (F + K₁ d − K₂ d), so that n of them leave −K₁ d (1 − rⁿ). A square that
 // is compressed first turns F into r (F + K₂ d) − K₁ d = r F, which stays 0.
 TEST(ClosedCycle, HertzAndMindlinsSpringsLeaveWhatTheirRuleSays) {
-  const double poisson = 0.3, modulus = 70e9, way = sheared.x();
-  const double shear_modulus = modulus / (2 * (1 + poisson)) / (2 * (2 - poisson));
+  const double poisson = 0.3, young = 70e9, way = sheared.x();
+  const double shear_modulus = young / (2 * (1 + poisson)) / (2 * (2 - poisson));
   const auto spring = [&](double overlap) { return 8 * shear_modulus * std::sqrt(Floor::radius * overlap); };
   const double shallow = spring(Floor::overlap), deep = spring(Floor::overlap + pressed.z()), r = shallow / deep;
 

@@ -86,9 +86,9 @@ TEST(Faceted, ABoxIsTouchedLikeItsMesh) {
 
 TEST(Faceted, ARectangleIsTouchedLikeItsMesh) {
   const Description wall = with(sheet, {{"type", "rectangle"}});
-  const Vec3 low(-0.3, -0.3, -0.3), high(2.3, 1.3, 0.3);
-  expect_like_its_mesh({"two-sided", wall, {{"open", true}, {"two_sided", true}}, low, high, 0.25});
-  expect_like_its_mesh({"one-sided", with(wall, {{"two_sided", false}}), {{"open", true}}, low, high, 0.25});
+  const Vec3 from(-0.3, -0.3, -0.3), to(2.3, 1.3, 0.3);
+  expect_like_its_mesh({"two-sided", wall, {{"open", true}, {"two_sided", true}}, from, to, 0.25});
+  expect_like_its_mesh({"one-sided", with(wall, {{"two_sided", false}}), {{"open", true}}, from, to, 0.25});
 }
 
 TEST(Faceted, ASawToothIsTouchedLikeItsMesh) {

@@ -17,7 +17,7 @@ constexpr double radius = 5e-4, diameter = 2 * radius, density = 2500;
 struct Lattice {
   Vec3 cell;
   std::vector<Vec3> places;
-  int neighbours;
+  std::size_t neighbours;
 };
 const double root2 = std::numbers::sqrt2, bcc = 2 / std::numbers::sqrt3;
 // Along the cubic axes, and rotated by 45 degrees about z.
@@ -73,7 +73,7 @@ Description packed(const Lattice& lattice, const Law& law, double squeeze, std::
 /// So that no body meets another twice.
 std::array<int, 3> enough(const Lattice& lattice) {
   std::array<int, 3> cells{};
-  for (int k = 0; k < 3; ++k) cells[k] = static_cast<int>(std::ceil(2.5 / lattice.cell[k]));
+  for (int k = 0; k < 3; ++k) cells[as_index(k)] = static_cast<int>(std::ceil(2.5 / lattice.cell[k]));
   return cells;
 }
 

@@ -123,11 +123,12 @@ TEST(SeamsAskew, AreNotFeltBesideTheJoint) {
           const Vec3 place(3 * radius * static_cast<double>(grains.size()), side * radii * radius, 0.9993 * radius);
           grains.push_back({origin + turn * place, radius});
         }
-      const double length = 3 * radius * static_cast<double>(grains.size());
+      const auto count = static_cast<double>(grains.size());
+      const double length = 3 * radius * count;
       const Vec3 along = turn * Vec3(length, 0, 0), across = turn * Vec3(0, tile, 0);
       Description d = description("linear-frictional", {{"friction_angle", 0.3}}, grains);
-      d["walls"]["one"] = rectangle(origin - 0.5 / grains.size() * along, along, across);
-      d["walls"]["other"] = rectangle(origin - 0.5 / grains.size() * along - across, along, across);
+      d["walls"]["one"] = rectangle(origin - 0.5 / count * along, along, across);
+      d["walls"]["other"] = rectangle(origin - 0.5 / count * along - across, along, across);
       const Trial trial(d);
       EXPECT_EQ(trial.world().contacts().size(), grains.size()) << angle << ", " << origin.transpose();
       for (std::size_t i = 0; i < grains.size(); ++i) {

@@ -35,7 +35,7 @@ struct SmallRun {
     world.add_contact(1, 2, {1, 1, 1}, {0.1, 0.1, 0.1});
     world.add_wall_contact(0, 0, {0, 0, -0.5}, {0, 0, -20});
     const Vec3 zero = Vec3::Zero();
-    world.wall.push_back({"floor", zero, zero, zero, zero, zero, zero, 0, 0, zero, 0});
+    world.wall.push_back({"floor", zero, zero, zero, zero, zero, zero, 0, 0, zero, 0, false, {}});
     world.stage_name = "shear";
     options.folder = folder;
     options.title = "a small run";

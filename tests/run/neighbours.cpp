@@ -21,7 +21,8 @@ std::set<Pair> brute_force(std::span<const Row> x, const Cell& cell, const Skins
     Vec3 by = Vec3::Zero();
     bool there = true;
     for (int k = 0; k < 3; ++k)
-      if (shift[k] != 0) by += shift[k] * cell.period(k), there = there && cell.periodic[k];
+      if (const int turns = shift[as_index(k)]; turns != 0)
+        by += turns * cell.period(k), there = there && cell.periodic[as_index(k)];
     if (!there) continue;
     for (std::uint32_t a = 0; a < x.size(); ++a)
       for (std::uint32_t b = a + 1; b < x.size(); ++b)
@@ -53,7 +54,7 @@ TEST(NeighbourSearch, FindsWhatBruteForceFinds) {
     for (const std::vector<double>& skin : {std::vector{0.0, 0.0, 0.0}, std::vector{0.02, 0.0, 0.07}}) {
       const Vec3 low(-1, 2, 0.5), high = low + Vec3(4.3, 5.1, 6.7);
       Cell cell{low, high};
-      for (int k = 0; k < 3; ++k) cell.periodic[k] = (axes >> k & 1) != 0;
+      for (int k = 0; k < 3; ++k) cell.periodic[as_index(k)] = (axes >> k & 1) != 0;
       const Bodies bodies = scattered(700, low, high, 0.1, random);
       NeighbourSearch search;
       Team team(2);

@@ -80,9 +80,10 @@ TEST(Periodic, GrainsThatMeetAcrossASideFeelTheSame) {
 TEST(Periodic, PackingMayBeShiftedAndWrapped) {
   const auto grains = jumble({6, 7, 8}, 1e-3, 0.1, 9);
   const auto bodies = static_cast<std::uint32_t>(grains.size());
-  const Vec3 none(0, 0, 0), rate(-30, 20, -10);
-  for (const auto& [rate, shear] : {std::pair(none, none), std::pair(rate, none), std::pair(rate, Vec3(200, -300, 100)),
-                                    std::pair(none, Vec3(3000, 9000, -5000))}) {
+  const Vec3 none(0, 0, 0), stretch(-30, 20, -10);
+  for (const auto& [rate, shear] :
+       {std::pair(none, none), std::pair(stretch, none), std::pair(stretch, Vec3(200, -300, 100)),
+        std::pair(none, Vec3(3000, 9000, -5000))}) {
     // With a mean flow all bodies start at rest relative to it.
     Trial one(in_cell(grains, Vec3::Zero(), rate, shear)),
         other(in_cell(grains, {1.3e-3, -2.9e-3, 5.1e-3}, rate, shear));

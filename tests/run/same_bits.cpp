@@ -128,7 +128,7 @@ TEST(SameBits, WhereCandidatesAtWallsAloneAreFoundAgain) {
   d["walls"]["bottom"]["motion"]["velocity"] = {1, 0, 0};
   Trial one(d, 1);
   std::deque<Trial> others;
-  for (const unsigned count : {2, 3, 7}) others.emplace_back(d, count);
+  for (const unsigned count : {2u, 3u, 7u}) others.emplace_back(d, count);
   for (int round = 0; round < 3; ++round) {
     one.step(100);
     for (Trial& other : others) {

@@ -27,7 +27,7 @@ TEST(Team, ForwardsExceptionsAndContinues) {
 TEST(Team, TakesEachChunkOnce) {
   for (const unsigned threads : {1u, 2u, 7u}) {
     Team team(threads);
-    for (const std::size_t chunks : {1, 2, 3, 6, 100}) {
+    for (const std::size_t chunks : {1u, 2u, 3u, 6u, 100u}) {
       std::vector<std::atomic<int>> taken(chunks);
       for (int pass = 0; pass < 100; ++pass) team.each(chunks, [&](std::size_t chunk) { ++taken[chunk]; });
       for (const auto& times : taken) EXPECT_EQ(times, 100) << threads << " threads, " << chunks << " chunks";

@@ -52,7 +52,7 @@ TEST(LiveComponents, RampsSetNumbersOfLiveInstances) {
   const auto& tally = dynamic_cast<const Tally&>(*live.components().engines.at("tally"));
   live.begin_stage();
   const int made = counts().engines;
-  for (const std::size_t k : {1, 2, 3, 4}) {
+  for (const std::size_t k : {1u, 2u, 3u, 4u}) {
     EXPECT_TRUE(live.advance_ramps(k));
     EXPECT_EQ(tally.strength, 2.0 * static_cast<double>(k));
   }

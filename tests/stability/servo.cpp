@@ -131,7 +131,7 @@ TEST(Servo, KeepsItsForceOnDashpotsAtAnyStep) {
             1.1 * d["walls"]["lid"]["motion"]["servo"]["pressure"].get<double>();
         d["time_step"] = {{"safety", safety}};
         Trial t(d);
-        t.step(static_cast<int>(12000 / safety));
+        t.step(static_cast<std::size_t>(12000 / safety));
         const double wanted = d["walls"]["lid"]["motion"]["servo"]["pressure"].get<double>();
         double worst = 0;
         for (int step = 0; step < 100; ++step) {

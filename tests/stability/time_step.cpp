@@ -171,7 +171,7 @@ double limit_of_all_modes(const Trial& t) {
   const World& world = t.world();
   const ContactLaw& law = *t.kernel().state().settings.law;
   const auto count = static_cast<Eigen::Index>(world.positions().size());
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(6 * count, 6 * count);
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(6 * count, 6 * count);
   for (const Contact& c : world.contacts()) {
     const double a = world.positions()[c.a].w, b = world.positions()[c.b].w;
     const Stiffness k = law.stiffness({.radius_a = a,
@@ -196,7 +196,7 @@ double limit_of_all_modes(const Trial& t) {
     const Eigen::Index first[] = {6 * c.a, 6 * c.b};
     for (int row = 0; row < 2; ++row)
       for (int column = 0; column < 2; ++column)
-        stiffness.block<6, 6>(first[row], first[column]) += one.block<6, 6>(6 * row, 6 * column);
+        whole.block<6, 6>(first[row], first[column]) += one.block<6, 6>(6 * row, 6 * column);
   }
   Eigen::VectorXd scale(6 * count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -204,7 +204,7 @@ double limit_of_all_modes(const Trial& t) {
     scale.segment<3>(6 * i).setConstant(std::sqrt(world.velocities()[k].w));
     scale.segment<3>(6 * i + 3).setConstant(std::sqrt(world.spins()[k].w));
   }
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * whole * scale.asDiagonal();
   return 2 /
          std::sqrt(
              Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());

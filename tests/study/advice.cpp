@@ -88,7 +88,7 @@ TEST_F(AdviceOf, TheCheapestCombinationIsTaken) {
 }
 
 TEST_F(AdviceOf, ACoarserLevelHasToSaveBesideAFinerOne) {
-  for (const int k : {0, 1}) result["effects"][k]["cost_standard_error"] = 0.01;
+  for (const std::size_t k : {0u, 1u}) result["effects"][k]["cost_standard_error"] = 0.01;
   result["effects"][0]["cost"] = 0.48;
   EXPECT_EQ(advice(0.2)[0].taken->level, "2");
   result["effects"][0]["cost"] = 0.46;

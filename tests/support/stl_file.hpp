@@ -56,7 +56,7 @@ inline std::string stl_binary(std::span<const Vec3> corners, std::string_view he
   bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
   for (std::uint32_t i = 0; i < count; ++i) {
     float numbers[12] = {};
-    for (int k = 0; k < 9; ++k) numbers[3 + k] = static_cast<float>(corners[3 * i + k / 3][k % 3]);
+    for (std::uint32_t k = 0; k < 9; ++k) numbers[3 + k] = static_cast<float>(corners[3 * i + k / 3][k % 3]);
     bytes.append(reinterpret_cast<const char*>(numbers), sizeof numbers);
     bytes.append(2, '\0');
   }

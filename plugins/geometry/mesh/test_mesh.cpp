@@ -52,6 +52,14 @@ Corners box(const Vec3& low, const Vec3& high) {
   add_quad(corners, at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
   return corners;
 }
+/// Each corner moved by up to 1e-7 along each axis.
+Corners jittered(Corners corners) {
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto k = static_cast<double>(i);
+    corners[i] += 1e-7 * Vec3(std::sin(k), std::cos(3 * k), std::sin(7 * k));
+  }
+  return corners;
+}
 const Vec3 low(0, 0, 0), high(1, 2, 3);
 bool within(const Vec3& c) { return (c.array() >= low.array()).all() && (c.array() <= high.array()).all(); }
 Corners without_top() {
@@ -571,9 +579,7 @@ TEST(Mesh, RefusesContradictingNormalsUnlessIgnored) {
 }
 
 TEST(Mesh, MergesCornersWithinTheTolerance) {
-  Corners corners = box(low, high);
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    corners[i] += 1e-7 * Vec3(std::sin(i), std::cos(3. * i), std::sin(7. * i));
+  const Corners corners = jittered(box(low, high));
   EXPECT_THAT(complaint(corners), HasSubstr("found an open surface: 36 edges"));
   EXPECT_THAT(complaint(corners, {{"merge_distance", 1e-8}}), HasSubstr("found an open surface"));
   EXPECT_EQ(complaint(corners, {{"merge_distance", 1e-6}}), "");
@@ -596,8 +602,7 @@ TEST(Mesh, NamesTheDistanceThatClosesIt) {
     EXPECT_EQ(complaint(corners, {{"merge_distance", named(message)}}), "") << gap;
     EXPECT_THAT(complaint(corners, {{"merge_distance", 0.99 * gap}}), HasSubstr("found an open surface")) << gap;
   }
-  Corners all = box(low, high);
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] += 1e-7 * Vec3(std::sin(i), std::cos(3. * i), std::sin(7. * i));
+  const Corners all = jittered(box(low, high));
   const double close = named(complaint(all));
   EXPECT_GT(close, 1e-7);
   EXPECT_EQ(complaint(all, {{"merge_distance", close}}), "");

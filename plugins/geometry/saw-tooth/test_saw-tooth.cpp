@@ -277,10 +277,10 @@ TEST(SawTooth, LargeGrainTouchesSeveralTipsOnceEach) {
   const double radius = 1, height = 0.999;
   const auto contacts = contacts_of(*fine.made(), {0.25, 0.2, height}, radius);  // tips at 0.02 k
   const double half_width = std::sqrt(radius * radius - height * height);
-  const int first = static_cast<int>(std::ceil((0.25 - half_width) / 0.02));
+  const auto first = static_cast<std::size_t>(std::ceil((0.25 - half_width) / 0.02));
   ASSERT_EQ(contacts.size(), static_cast<std::size_t>((0.25 + half_width) / 0.02) - first + 1);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const double x = 0.02 * (first + static_cast<double>(i)) - 0.25;
+    const double x = 0.02 * static_cast<double>(first + i) - 0.25;
     EXPECT_NEAR(contacts[i].overlap, radius - std::hypot(x, height), 1e-12 * radius);
     EXPECT_LE((contacts[i].normal - Vec3(x, 0, -height).normalized()).norm(), 1e-14);
     EXPECT_EQ(contacts[i].feature, 2 * (first + i));

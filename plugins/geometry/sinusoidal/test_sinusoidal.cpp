@@ -67,7 +67,7 @@ struct Waves {
     const auto check = [&](long double u) {
       if (z <= height(u) && u > 0 && u < length_a) return;
       if (z < 0 && valley(u) != valley(std::clamp<long double>(x, 0, length_a))) return;
-      const Vec3 point(u, y, height(u));
+      const Vec3 point = Eigen::Vector3<long double>(u, y, height(u)).cast<double>();
       if (std::abs((point - centre).norm() - radius) < 1e-12 * radius) clear = false;
       if ((point - centre).norm() < radius) points.push_back(point);
     };
@@ -300,11 +300,11 @@ TEST(Sinusoidal, LargeGrainHasOneContactPerCrestWithinReach) {
   const double radius = 1, height = 0.9995;
   const auto contacts = contacts_of(*fine.made(), {0.25, 0.2, height}, radius);  // crests at 0.02 k
   const double half_width = std::sqrt(radius * radius - height * height);
-  const int first = static_cast<int>(std::ceil((0.25 - half_width) / 0.02)),
-            last = static_cast<int>(std::floor((0.25 + half_width) / 0.02));
-  ASSERT_EQ(contacts.size(), static_cast<std::size_t>(last - first + 1));
+  const auto first = static_cast<std::size_t>(std::ceil((0.25 - half_width) / 0.02)),
+             last = static_cast<std::size_t>(std::floor((0.25 + half_width) / 0.02));
+  ASSERT_EQ(contacts.size(), last - first + 1);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const double x = 0.02 * (first + static_cast<double>(i)) - 0.25;
+    const double x = 0.02 * static_cast<double>(first + i) - 0.25;
     EXPECT_NEAR(contacts[i].overlap, radius - std::hypot(x, height), 2e-6) << "the crest is lower beside its top";
     EXPECT_EQ(contacts[i].feature, first + 1 + i);
   }
@@ -369,14 +369,14 @@ TEST(Sinusoidal, PushesOutOfTheFlankOnItsSideOfACrest) {
     EXPECT_EQ(contacts.size(), 1u);
     return contacts.empty() ? SurfaceContact{} : contacts[0];
   };
-  const double shallow = 0.95 * usual.trough_radius(), deep = 1.2 * usual.trough_radius();
+  const double shallow = 0.95 * usual.trough_radius(), deeper = 1.2 * usual.trough_radius();
   for (const double x : {crest - aside, crest, crest + aside}) {
     EXPECT_NEAR(contact(x, shallow).overlap, radius + shallow, 1e-9);
     EXPECT_NEAR(contact(x, shallow).normal.x(), 0, 1e-6);
   }
-  const SurfaceContact before = contact(crest - aside, deep), at = contact(crest, deep),
-                       after = contact(crest + aside, deep);
-  EXPECT_LT(at.overlap, radius + deep - 1e-4);
+  const SurfaceContact before = contact(crest - aside, deeper), at = contact(crest, deeper),
+                       after = contact(crest + aside, deeper);
+  EXPECT_LT(at.overlap, radius + deeper - 1e-4);
   EXPECT_NEAR(before.overlap, at.overlap, 2 * aside);
   EXPECT_NEAR(after.overlap, at.overlap, 2 * aside);
   EXPECT_GT(before.normal.x(), 0.1);

@@ -42,14 +42,14 @@ TEST(ForceChains, CountsAContactInBothOfItsDirections) {
   const auto counted = channel_values(probe, world, "contacts_by_direction");
   EXPECT_EQ(counted, count);
   const auto forces = channel_values(probe, world, "force_by_direction");
-  for (int i = 0; i < 36; ++i) EXPECT_NEAR(forces[i], force[i], 1e-12) << i;
+  for (std::size_t i = 0; i < 36; ++i) EXPECT_NEAR(forces[i], force[i], 1e-12) << i;
 }
 
 TEST(ForceChains, CountsEveryDirectionInItsBin) {
   for (int bin = 0; bin < 36; ++bin) {
     ForceChainsProbe probe;
     const auto counted = channel_values(probe, world_of({{10 * bin + 3.0, 1}}), "contacts_by_direction");
-    for (int i = 0; i < 36; ++i) EXPECT_EQ(counted[i], i % 18 == bin % 18 ? 1 : 0) << bin << ", " << i;
+    for (int i = 0; i < 36; ++i) EXPECT_EQ(counted[as_index(i)], i % 18 == bin % 18 ? 1 : 0) << bin << ", " << i;
   }
 }
 
@@ -59,7 +59,7 @@ TEST(ForceChains, TakesDirectionsInThePlane) {
   const Vec3 normal = Vec3(std::cos(25 * degree), std::sin(25 * degree), 0);
   world.add_contact(0, 1, 2 * normal, 5 * normal);
   for (const auto& [plane, bin] :
-       std::vector<std::pair<std::string, int>>{{"xy", 2}, {"yx", 6}, {"xz", 0}, {"zy", 9}}) {
+       std::vector<std::pair<std::string, std::size_t>>{{"xy", 2}, {"yx", 6}, {"xz", 0}, {"zy", 9}}) {
     ForceChainsProbe probe;
     probe.plane = plane;
     const auto counted = channel_values(probe, world, "contacts_by_direction");

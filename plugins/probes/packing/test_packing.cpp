@@ -77,7 +77,7 @@ TEST(Packing, KnowsTheCubicLattice) {
   PackingProbe probe;
   const auto stress = channel_values(probe, world, "stress");
   const std::vector<double> expected{3, 0, 0, 0, 4, 0, 0, 0, 5};
-  for (int i = 0; i < 9; ++i) EXPECT_NEAR(stress[i], expected[i] / (d * d), 1e-6) << i;
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(stress[i], expected[i] / (d * d), 1e-6) << i;
   EXPECT_DOUBLE_EQ(value_of(world, "mean_contact_force"), 4);
 }
 
@@ -92,7 +92,7 @@ TEST(Packing, TakesForceThenBranchInTheStress) {
     if (contact.branch.z() > 0) contact.force = {2, 0, 0};  // a force along x on grains above: σ_xz
   PackingProbe probe;
   const auto stress = channel_values(probe, world, "stress");
-  for (int i = 0; i < 9; ++i) EXPECT_NEAR(stress[i], i == 2 ? 2 : 0, 1e-10) << i;
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(stress[i], i == 2 ? 2 : 0, 1e-10) << i;
 }
 
 TEST(Packing, LeavesTheRimOutOfTheInterior) {

@@ -30,7 +30,7 @@ TEST(Triaxial, CompressesIsotropicallyOnThePresentCrossSection) {
   for (const auto& [name, wall] : walls.items()) {
     EXPECT_EQ(wall["motion"]["servo"]["pressure"], 50e3) << name;
     EXPECT_EQ(wall["motion"]["servo"]["area"], "specimen") << name;
-    for (int axis = 0; axis < 3; ++axis) {  // each faces the centre
+    for (std::size_t axis = 0; axis < 3; ++axis) {  // each faces the centre
       const double point = wall["point"][axis], normal = wall["normal"][axis];
       EXPECT_EQ(normal, point > 0 ? -1 : point < 0 ? 1 : 0) << name;
     }
