@@ -41,8 +41,6 @@ function(grit_plugin folder name)
   target_link_libraries(${target}_objects PUBLIC grit::sdk ${arg_LIBRARIES})
   if(TARGET grit_precompiled_hidden)  # within grit's own tree
     target_precompile_headers(${target}_objects REUSE_FROM grit_precompiled_hidden)
-    target_compile_options(${target}_objects PRIVATE
-                           $<$<CXX_COMPILER_ID:Clang>:-Wconversion> $<$<CXX_COMPILER_ID:Clang>:-Wshadow>)
   endif()
   add_library(${target} MODULE)
   target_link_libraries(${target} PRIVATE ${target}_objects grit::grit)
