@@ -29,8 +29,8 @@ class MovingFloor : public testing::Test {
     state_.wall_contacts.find_candidates(0, state_.bodies, state_.group, state_.surfaces, state_.lists.skins());
   }
   std::size_t contacts() {
-    state_.wall_contacts.evaluate(0, *state_.settings.law, state_.bodies, true, state_.surfaces, 0, state_.sum.data(),
-                                  nullptr);
+    state_.wall_contacts.evaluate(0, *state_.settings.law, state_.bodies, true, state_.surfaces, 0, false,
+                                  state_.sum.data(), nullptr);
     return state_.wall_contacts.touching_count();
   }
   State state_;

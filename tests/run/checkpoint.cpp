@@ -341,6 +341,18 @@ TEST_P(Resume, AnywhereGivesTheSameBits) {
   expect_same_when_stopped(d_, whole_, {1, end / 3, end / 3 + 20, 4 * end / 5});
 }
 
+/// Forces are known already where a frame finds no room: they are found again after the checkpoint.
+TEST_P(Resume, WhereAFrameFoundNoRoomGivesTheSameBits) {
+  const std::uint64_t end = whole_.tape.summary.steps;
+  for (const std::uint64_t at : {end / 4, end / 2}) {
+    const Taped part(d_, 2, {}, nullptr, {}, 0, [&](const Kernel& now) { return now.world().step() >= at; });
+    ASSERT_EQ(part.tape.summary.status, "refused");
+    ASSERT_FALSE(part.tape.checkpoints.empty());
+    const Taped rest(d_, 1, {}, &part.tape.checkpoints.back(), part.tape.entries);
+    EXPECT_EQ(parting(whole_, rest), "") << "from step " << part.tape.checkpoints.back().step;
+  }
+}
+
 /// Checkpoints at wall-clock intervals change nothing, and a run can be resumed from each.
 TEST_P(Resume, AtWallClockIntervalsChangesNothing) {
   const Taped often(d_, 2, {}, nullptr, {}, 1e-9);

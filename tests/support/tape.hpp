@@ -28,8 +28,12 @@ struct Tape final : Recorder {
   std::vector<Entry> entries;
   std::vector<Checkpoint> checkpoints;
   std::function<void(const World&)> look = [](const World&) {};  ///< at every sample
+  std::function<bool()> refuses = [] { return false; };  ///< whether a frame, or the end of a stage, finds no room
   RunSummary summary;
 
+  void expect_room() const override {
+    if (refuses()) throw RefusedRecord("no room");
+  }
   void begin(const World&, std::span<const ProbeGroup> probes) override {
     groups_.assign(probes.begin(), probes.end());
   }
@@ -72,9 +76,11 @@ struct Taped {
   Simulation simulation;
   const Kernel* kernel;
 
-  /// `stop` is asked at every sample and, every eighth step, between two steps.
+  /// `stop` is asked at every sample and, every eighth step, between two steps; `refuse` where a frame is due or a
+  /// stage ends.
   Taped(const Description& plain, unsigned threads, std::function<bool(const Kernel&)> stop = {},
-        const Checkpoint* resume = nullptr, std::vector<Tape::Entry> before = {}, double checkpoint_every = 0)
+        const Checkpoint* resume = nullptr, std::vector<Tape::Entry> before = {}, double checkpoint_every = 0,
+        std::function<bool(const Kernel&)> refuse = {})
       : simulation(recorded(scene_of(plain), tape, threads)), kernel(&kernel_of(simulation)) {
     tape.entries = std::move(before);
     bool stops = false;
@@ -86,8 +92,13 @@ struct Taped {
     simulation.on_progress([&](const Progress&) { look(kernel->world()); }, 0);
     simulation.on_checkpoint([&](const Checkpoint& one) { tape.checkpoints.push_back(one); }, checkpoint_every);
     if (resume != nullptr) simulation.resume(*resume);
-    run_recorded(simulation);
-    tape.look = {};
+    if (refuse) tape.refuses = [&] { return refuse(*kernel); };
+    try {
+      run_recorded(simulation);
+    } catch (const RefusedRecord&) {
+      tape.summary.status = "refused";
+    }
+    tape.look = {}, tape.refuses = {};
   }
   Taped(const Taped&) = delete;
 };

@@ -71,11 +71,13 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> 
   if (order) {
     const std::vector<std::uint32_t> now = present_indices(*order, chunks_.size() * chunk_bodies);
     std::vector<WallContact> contact;
+    std::vector<std::uint8_t> crossed;
     std::vector<double> state;
     for (Chunk& chunk : chunks_) {
       contact.insert(contact.end(), chunk.contact.begin(), chunk.contact.end());
+      crossed.insert(crossed.end(), chunk.crossed.begin(), chunk.crossed.end());
       state.insert(state.end(), chunk.state.begin(), chunk.state.end());
-      chunk.contact.clear(), chunk.state.clear(), chunk.row.clear();
+      chunk.contact.clear(), chunk.crossed.clear(), chunk.state.clear(), chunk.row.clear();
     }
     for (WallContact& t : contact) t.body = now[t.body];
     chunks_.resize(chunks_of(count));
@@ -87,6 +89,7 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> 
     for (const std::size_t p : place) {
       Chunk& chunk = chunks_[contact[p].body / chunk_bodies];
       chunk.contact.push_back(contact[p]);
+      chunk.crossed.push_back(crossed[p]);
       chunk.state.insert(chunk.state.end(), state.begin() + static_cast<std::ptrdiff_t>(p * field_count),
                          state.begin() + static_cast<std::ptrdiff_t>((p + 1) * field_count));
       chunk.row.emplace_back();
@@ -142,7 +145,7 @@ void WallContacts::renumber_walls(std::span<const std::uint32_t> now) {
   const std::size_t fields = fields_.size();
   for (Chunk& chunk : chunks_) {
     Chunk before;
-    before.contact.swap(chunk.contact), before.state.swap(chunk.state);
+    before.contact.swap(chunk.contact), before.crossed.swap(chunk.crossed), before.state.swap(chunk.state);
     chunk.row.clear(), chunk.candidate.clear();
     for (WallContact& contact : before.contact) contact.wall = now[contact.wall];
     std::vector<std::size_t> order;
@@ -151,6 +154,7 @@ void WallContacts::renumber_walls(std::span<const std::uint32_t> now) {
     std::ranges::sort(order, {}, [&](std::size_t i) { return key(before.contact[i]); });
     for (const std::size_t i : order) {
       chunk.contact.push_back(before.contact[i]);
+      chunk.crossed.push_back(before.crossed[i]);
       const auto first = before.state.begin() + static_cast<std::ptrdiff_t>(i * fields);
       chunk.state.insert(chunk.state.end(), first, first + static_cast<std::ptrdiff_t>(fields));
       chunk.row.emplace_back();
@@ -159,17 +163,20 @@ void WallContacts::renumber_walls(std::span<const std::uint32_t> now) {
 }
 
 double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies& bodies, bool one_material,
-                              std::span<const WallSurface> walls, double dt, BodySum* sum, Losses* losses) {
+                              std::span<const WallSurface> walls, double dt, bool again, BodySum* sum, Losses* losses) {
   static thread_local Workspace work;
   Chunk& chunk = chunks_[c];
   chunk.load.assign(walls.size(), {});
   if (chunk.candidate.empty()) {
-    chunk.contact.clear(), chunk.state.clear(), chunk.row.clear();
+    chunk.contact.clear(), chunk.crossed.clear(), chunk.state.clear(), chunk.row.clear();
     return 0;
   }
   work.before.clear();
-  for (const WallContact& t : chunk.contact)
-    work.before.push_back({t.normal, t.body, t.wall, t.feature, t.material, t.overlap});
+  for (std::size_t i = 0; i < chunk.contact.size(); ++i) {
+    const WallContact& t = chunk.contact[i];
+    work.before.push_back(
+        {t.normal, t.normal_before, t.body, t.wall, t.feature, t.material, t.overlap, chunk.crossed[i] != 0});
+  }
   chunk.contact.clear();
   const bool at_a_distance = law.has_reach();
   for (std::uint32_t w = 0; w < walls.size(); ++w) {
@@ -204,7 +211,7 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
   }
 
   leave_out_hidden(chunk, work, bodies, walls);
-  carry_histories(chunk, work, bodies, dt);
+  carry_histories(chunk, work, bodies, dt, again);
   if (std::ranges::any_of(walls, &WallSurface::surface_moves)) carry_along(chunk, bodies, walls);
   if (losses != nullptr) part(work, law, bodies, *losses);
   chunk.row.resize(chunk.contact.size());
@@ -215,6 +222,7 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
                   .count = chunk.contact.size(),
                   .contact = chunk.contact.data(),
                   .dt = dt,
+                  .again = again,
                   .state = chunk.state.data(),
                   .row = chunk.row.data(),
                   .sum = sum,
@@ -321,19 +329,29 @@ void WallContacts::carry_along(Chunk& chunk, const Bodies& bodies, std::span<con
   }
 }
 
-void WallContacts::carry_histories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const {
+void WallContacts::carry_histories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt, bool again) const {
   // In nearly all steps contacts persist.
   const auto same = [](const WallContact& now, const Before& before) { return key(now) == key(before); };
+  chunk.crossed.assign(chunk.contact.size(), 0);
+  const auto cross = [&](std::uint32_t i) {
+    const WallContact& t = chunk.contact[i];
+    stand_still_in_valley(chunk.contact[i], bodies.position[t.body], bodies.velocity[t.body], dt);
+    chunk.crossed[i] = 1;
+  };
+  const auto continue_from = [&](std::uint32_t from, std::uint32_t to) {
+    const Before& before = work.before[from];
+    chunk.contact[to].normal_before = again ? before.normal_before : before.normal;
+    if (again && before.crossed) cross(to);
+  };
   work.gone.clear();
   if (std::ranges::equal(chunk.contact, work.before, same)) {
-    for (std::size_t i = 0; i < chunk.contact.size(); ++i) chunk.contact[i].normal_before = work.before[i].normal;
+    for (std::uint32_t i = 0; i < chunk.contact.size(); ++i) continue_from(i, i);
     return;
   }
   const std::size_t fields = fields_.size();
   work.state_before.swap(chunk.state);
   chunk.state.assign(chunk.contact.size() * fields, 0.0);
-  const auto hand_on = [&](std::size_t from, std::size_t to) {
-    chunk.contact[to].normal_before = work.before[from].normal;
+  const auto hand_on = [&](std::uint32_t from, std::uint32_t to) {
     for (std::size_t f = 0; f < fields; ++f) chunk.state[to * fields + f] = work.state_before[from * fields + f];
   };
   auto &fresh = work.fresh, &gone = work.gone;
@@ -342,8 +360,12 @@ void WallContacts::carry_histories(Chunk& chunk, Workspace& work, const Bodies& 
   for (std::uint32_t i = 0; i < chunk.contact.size(); ++i) {
     const auto own = key(chunk.contact[i]);
     for (; old < work.before.size() && key(work.before[old]) < own; ++old) gone.push_back(old);
-    if (old < work.before.size() && key(work.before[old]) == own) hand_on(old++, i);
-    else fresh.push_back(i);
+    if (old < work.before.size() && key(work.before[old]) == own) {
+      hand_on(old, i);
+      continue_from(old++, i);
+    } else {
+      fresh.push_back(i);
+    }
   }
   for (; old < work.before.size(); ++old) gone.push_back(old);
   // A contact that continues on another wall's surface keeps its history.
@@ -358,7 +380,8 @@ void WallContacts::carry_histories(Chunk& chunk, Workspace& work, const Bodies& 
     }
     if (best == gone.end()) continue;
     hand_on(*best, i);
-    stand_still_in_valley(chunk.contact[i], bodies.position[t.body], bodies.velocity[t.body], dt);
+    chunk.contact[i].normal_before = work.before[*best].normal;
+    cross(i);
     gone.erase(best);
   }
 }
@@ -444,8 +467,9 @@ void WallContacts::check_restored(std::size_t bodies, std::size_t walls, std::si
                         std::ranges::is_sorted(chunk.candidate_start),
                     "bodies near walls are of other walls");
     expect_restored(std::ranges::all_of(chunk.candidate, is_here), "a body that is not there is near a wall");
-    expect_restored(chunk.state.size() == chunk.contact.size() * fields_.size(),
-                    "lists of contacts with walls have different lengths");
+    expect_restored(
+        chunk.crossed.size() == chunk.contact.size() && chunk.state.size() == chunk.contact.size() * fields_.size(),
+        "lists of contacts with walls have different lengths");
     for (const WallContact& contact : chunk.contact)
       expect_restored(is_here(contact.body) && contact.wall < walls && contact.material < materials,
                       "a contact with a wall is of a body, a wall or a material that is not there");

@@ -88,9 +88,10 @@ class WallContacts {
   void renumber_walls(std::span<const std::uint32_t> now);
 
   /// Finds and evaluates the contacts of one chunk; adds to the sums of its bodies, and to `losses` unless it is
-  /// null. Returns the largest overlap over a radius.
+  /// null. `again` if this instant has been evaluated before: forces are the same, and histories do not advance.
+  /// Returns the largest overlap over a radius.
   double evaluate(std::size_t chunk, const ContactLaw& law, const Bodies& bodies, bool one_material,
-                  std::span<const WallSurface> walls, double dt, BodySum* sum, Losses* losses);
+                  std::span<const WallSurface> walls, double dt, bool again, BodySum* sum, Losses* losses);
   /// Bodies have grown by `factor` to their present size; increases the overlaps accordingly.
   void grow(const Bodies& bodies, double factor);
   /// Loads on all walls, summed chunk by chunk.
@@ -150,12 +151,13 @@ class WallContacts {
     std::vector<std::uint32_t> candidate_start;  // by wall
     std::vector<std::uint32_t> candidate;        // bodies
     std::vector<WallContact> contact;
+    std::vector<std::uint8_t> crossed;  // by contact: whether it continues one of another wall since the last step
     std::vector<double> state;
     std::vector<ContactRow> row;
     std::vector<WallLoad> load;  // by wall
 
     void serialize(Archive& archive) {
-      archive(candidate_start, candidate, contact, state);
+      archive(candidate_start, candidate, contact, crossed, state);
       row.resize(contact.size());
     }
   };
@@ -163,11 +165,12 @@ class WallContacts {
   static bool acts(const WallContact& contact, const ContactRow& row) {
     return contact.overlap >= 0 || row.force.w != 0;
   }
-  /// A contact of the last step.
+  /// A contact of the last step, or of the last evaluation of this one.
   struct Before {
-    Vec3 normal;
+    Vec3 normal, normal_before;
     std::uint32_t body, wall, feature, material;
     double overlap;
+    bool crossed;
   };
   /// Buffers of evaluate(). One for all chunks of a thread, so that it stays in the cache.
   struct Workspace {
@@ -187,7 +190,7 @@ class WallContacts {
   /// Adds the velocities of surfaces that move relative to their walls.
   static void carry_along(Chunk& chunk, const Bodies& bodies, std::span<const WallSurface> walls);
   /// Copies histories from the contacts of the last step to those of this one. work.gone lists those that ended.
-  void carry_histories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const;
+  void carry_histories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt, bool again) const;
   /// Books the elastic energy of ended contacts as dissipated, and that of bonds that broke.
   void part(const Workspace& work, const ContactLaw& law, const Bodies& bodies, Losses& losses) const;
 

@@ -334,7 +334,7 @@ void Kernel::serialize(Archive& archive) {
   archive.part("contact history", 1);
   serialize_fields(archive);
   part("contacts", 1, state_.pairs);
-  part("wall contacts", 1, state_.wall_contacts);
+  part("wall contacts", 2, state_.wall_contacts);
   part("departures", 1, state_.departures, state_.discharged_mass);
   part("energy", 1, state_.overlap, balance_, guard_);
   part("time step", 1, stepper_);

@@ -140,7 +140,7 @@ void Stepper::evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps) 
   if (state_.surfaces.empty()) return;
   own.overlap = std::max(own.overlap, state_.wall_contacts.evaluate(chunk, *state_.settings.law, state_.bodies,
                                                                     state_.statistics.one_material, state_.surfaces,
-                                                                    again ? 0 : state_.time.previous_dt, sum, losses));
+                                                                    state_.time.previous_dt, again, sum, losses));
   laps(own.time_of(StepPhase::walls));
 }
 

@@ -91,7 +91,8 @@ struct WallBatch {
   const std::uint8_t* material;  ///< of each body; null if there is only one
   std::size_t count;
   const WallContact* contact;
-  double dt;
+  double dt;        ///< s
+  bool again;       ///< this instant has been evaluated before: contact histories do not advance
   double* state;    ///< [contact][field]
   ContactRow* row;  ///< [contact]: force on the wall and moment about the contact point, which lies on the wall. Shear
                     ///< acts at the sphere's surface, one overlap behind that point; so the moment is that of the law

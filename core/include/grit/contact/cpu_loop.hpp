@@ -486,7 +486,8 @@ template <class Law, unsigned Features, class L, bool EnergyTerms>
   constexpr auto& kept = kept_fields<Law, Features>;
   constexpr std::size_t width = lane_width<L>, fields = kept.size();
   using State = typename Law::template State<L>;
-  const L per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
+  const L per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0), turns(batch.again ? 0.0 : 1.0);
+  const double history_dt = batch.again ? 0 : batch.dt;
   const L place([](std::size_t k) { return k; });
   L most(0.0);
   Loss<L> left{L(0.0), L(0.0), L(0.0)};
@@ -515,13 +516,13 @@ template <class Law, unsigned Features, class L, bool EnergyTerms>
     at.radius_a = at.radius_b = pa.w;
     at.branch_fraction = L(1.0);
     at.inverse_mass_a = va.w, at.inverse_mass_b = L(0.0);
-    at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt, L(1.0));
+    at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, history_dt, turns);
     // The last term moves the wall's velocity to the sphere's surface: a sphere that a rotating wall carries along, or
     // that pivots about an edge, does not slip.
     at.velocity = wall_velocity - va.xyz() - cross(pa.w * wa.xyz(), L(0.5) * at.turn.bisector) +
                   (at.overlap * per_dt) * (normal - normal_before);
     at.spin = wall_spin - wa.xyz();
-    at.dt = L(batch.dt);
+    at.dt = L(history_dt);
 
     const auto history = [&](std::size_t k) { return batch.state + (first + std::min(k, used - 1)) * fields; };
     State state{};

@@ -201,6 +201,7 @@ class WallPair {
                     .count = 1,
                     .contact = &contact,
                     .dt = dt_,
+                    .again = false,
                     .state = state_.data(),
                     .row = &row,
                     .sum = &sum,
