@@ -219,7 +219,9 @@ Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> wall
   const auto old = later();
   for (const auto& path : old)
     if (!is_own_frame(path)) throw FileError(path.string() + foreign_frame);
-  for (const auto& path : old) std::filesystem::remove(path, error);
+  for (const auto& path : old)
+    if (std::filesystem::remove(path, error); error)
+      throw FileError(path.string() + ": cannot remove it: " + error.message());
   write_indices();
   const auto is_written = [&](const FrameExport& one) { return std::ranges::find(exports_, &one) != exports_.end(); };
   for (const FrameExport& one : frame_exports())
