@@ -18,7 +18,7 @@ constexpr double overlap_growth = 1.2, shallowest = 1e-6;
 // the limit is higher: the packing of tests/stability is stable at 0.4 and unstable at 0.5.
 constexpr double packing_fraction = 0.06;
 // Overlap over a radius up to which impacts are expected. The guard does not enter: it only decides where a run stops.
-constexpr double deepest = 1;
+constexpr double deepest_impact = 1;
 
 /// Normal stiffness of two bodies of the smallest radius, or of one and a wall, at this overlap over a radius [N/m].
 double stiffness_of_smallest(const State& state, std::size_t a, std::size_t b, bool wall, double overlap) {
@@ -93,9 +93,9 @@ void Stiffening::expect(const State& state, const DisplacementBounds& bounds) {
   const double speed =
       std::max({2 * fastest, fastest + bounds.wall_closing_speed(), bounds.closing_speed(state.time.previous_dt)});
   double overlap = std::max(state.overlap, linear_until_);
-  while (overlap < deepest && speed_of_impact(state, overlap) < speed) overlap *= overlap_growth;
+  while (overlap < deepest_impact && speed_of_impact(state, overlap) < speed) overlap *= overlap_growth;
   expected_ = overlap;
-  expected_speed_ = overlap < deepest ? speed_of_impact(state, overlap_growth * overlap) : infinity;
+  expected_speed_ = overlap < deepest_impact ? speed_of_impact(state, overlap_growth * overlap) : infinity;
 }
 
 }  // namespace grit
