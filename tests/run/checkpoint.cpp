@@ -341,7 +341,6 @@ TEST_P(Resume, AnywhereGivesTheSameBits) {
   expect_same_when_stopped(d_, whole_, {1, end / 3, end / 3 + 20, 4 * end / 5});
 }
 
-/// Forces are known already where a frame finds no room: they are found again after the checkpoint.
 TEST_P(Resume, WhereAFrameFoundNoRoomGivesTheSameBits) {
   const std::uint64_t end = whole_.tape.summary.steps;
   for (const std::uint64_t at : {end / 4, end / 2}) {

@@ -124,6 +124,7 @@ TEST(SpatialOrder, FollowsTheCurveForAnyNumberOfThreads) {
     std::ranges::sort(all);
     for (std::uint32_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], i);
     // Neighbours on the curve are near each other: on average within some cells, far less than across the box.
+    if (sides.maxCoeff() < 0.1) continue;  // all in one cell
     double steps = 0;
     for (std::size_t i = 1; i < order.size(); ++i)
       steps += (xyz(bodies.position[order[i]]) - xyz(bodies.position[order[i - 1]])).norm();

@@ -66,7 +66,7 @@ class Recorder {
   virtual ~Recorder() = default;
   /// Once, before the first sample; in a resumed run after serialize() has restored the position.
   virtual void begin(const World& world, std::span<const ProbeGroup> probes) = 0;
-  /// Before the samples of an instant with a frame, or at the end of a stage: throws RefusedRecord if a file is in the
+  /// Before the forces of an instant with a frame, or at which a stage may end: throws RefusedRecord if a file is in the
   /// way of the next frame or of the last results.
   virtual void expect_room() const {}
   /// One sample of the probe with this index in begin()'s list.

@@ -131,9 +131,10 @@ StageRunner::Event StageRunner::next(bool stop) {
     instant_ = {};
     return Event::stepped;
   }
+  // Before forces are found: a checkpoint that is saved now gives the same bits.
+  if (instant_.may_end || frames_.is_due()) recorder_.expect_room();
   find_forces();
   const bool met = instant_.may_end && is_met(stage.until, kernel_, start_);
-  if (met || frames_.is_due()) recorder_.expect_room();
   observe(met);
   if (met) {
     end_stage(stage);
