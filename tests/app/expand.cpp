@@ -57,7 +57,7 @@ std::vector<std::filesystem::path> sims(const std::string& start) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(GRIT_SOURCE_DIR "/sims"))
     if (entry.path().extension() == ".json" && entry.path().filename().string().starts_with(start) &&
-        entry.path().parent_path().filename() != "studies")
+        entry.path().parent_path().filename() != "studies" && entry.path().parent_path().filename() != "calibrations")
       files.push_back(entry.path());
   std::ranges::sort(files);
   return files;

@@ -457,9 +457,9 @@ struct SavedState {
   Checkpoint checkpoint;
 
   /// The first byte after the name and the version of a part.
-  std::size_t part(const std::string& name) const {
+  std::size_t part(const std::string& name, std::uint32_t version = 1) const {
     Archive header;
-    header.part(name, 1);
+    header.part(name, version);
     const auto found = std::ranges::search(checkpoint.state, header.bytes());
     EXPECT_FALSE(found.empty()) << name;
     return static_cast<std::size_t>(found.end() - checkpoint.state.begin());
@@ -501,7 +501,7 @@ TEST(Checkpoint, ThatWasAlteredIsRefused) {
   expect(state.with(contacts, std::uint64_t{7}), "contacts are of another number of bodies");
   expect(state.with(contacts + 16, nowhere), "contacts of bodies are not one after the other");
   // Contacts with walls: chunks, each with the places of its walls, and the bodies near them.
-  const std::size_t near = state.part("wall contacts") + 8, places = state.read<std::uint64_t>(near);
+  const std::size_t near = state.part("wall contacts", 2) + 8, places = state.read<std::uint64_t>(near);
   ASSERT_EQ(places, 2u);
   expect(state.with(near + 8, nowhere), "bodies near walls are of other walls");
   ASSERT_GT(state.read<std::uint64_t>(near + 8 + 4 * places), 0u);

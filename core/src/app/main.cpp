@@ -30,8 +30,7 @@ std::span<const Command> commands() {
       {"describe", "[NAME]", "Print the parameters of a section of a description, or of a component.",
        describe_command},
       {"study", "STUDY", "Run a sweep, or a study of speed against accuracy; plot its metrics.", study_command},
-      {"calibrate", "FILE", "Find parameters of a description for which its runs meet targets; with their errors.",
-       calibrate_command},
+      {"calibrate", "FILE", "Find parameters for which runs meet targets, with their errors.", calibrate_command},
       {"advise", "FILE", "Suggest cheaper settings within a tolerance, from the results of a study.", advise_command},
       {"report", "DIR…", "Write a page with curves and grains of one run, or of several side by side.", report_command},
   }};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <limits>
 #include <nlopt.hpp>
 #include <optional>
 #include <vector>
@@ -13,6 +14,8 @@ namespace {
 constexpr double first_step = 0.2;
 /// Misfit of a trial that failed, over the worst of the others; and without any.
 constexpr double worse = 2, bad = 1e3;
+/// The search begins again from its best place while it lowers the misfit to this part.
+constexpr double worthwhile = 0.9;
 
 /// BOBYQA needs two parameters.
 nlopt::algorithm algorithm_of(const std::string& name, std::size_t parameters) {
@@ -54,6 +57,32 @@ struct Objective {
   }
 };
 
+/// One search from a place, with this first step. Nothing if its steps became small.
+std::optional<SearchEnd> search_from(Trials& trials, const OptimizerDescription& description, std::vector<double> place,
+                                     double step) {
+  nlopt::opt optimizer(algorithm_of(description.algorithm, place.size()), static_cast<unsigned>(place.size()));
+  Objective objective{trials, static_cast<std::size_t>(description.trials), optimizer};
+  optimizer.set_min_objective(Objective::call, &objective);
+  optimizer.set_lower_bounds(0);
+  optimizer.set_upper_bounds(1);
+  optimizer.set_initial_step(step);
+  optimizer.set_xtol_abs(description.resolution);
+  // Places that are known cost nothing, but the search must not go on among them for ever.
+  optimizer.set_maxeval(static_cast<int>(10 * description.trials));
+  try {
+    double least = 0;
+    optimizer.optimize(place, least);
+  } catch (const nlopt::forced_stop&) {
+    // The objective says why.
+  } catch (const nlopt::roundoff_limited&) {
+    // No smaller step makes a difference.
+  } catch (const std::runtime_error&) {
+    // BOBYQA gives up where scatter hides the effect of its steps.
+  }
+  if (objective.thrown) std::rethrow_exception(objective.thrown);
+  return objective.end;
+}
+
 }  // namespace
 
 const char* sentence_of(SearchEnd end) {
@@ -69,32 +98,20 @@ const char* sentence_of(SearchEnd end) {
 }
 
 SearchEnd search(Trials& trials, const OptimizerDescription& description) {
-  const std::size_t count = trials.parameters().size();
-  nlopt::opt optimizer(algorithm_of(description.algorithm, count), static_cast<unsigned>(count));
   nlopt::srand(1);  // the population of crs
-  Objective objective{trials, static_cast<std::size_t>(description.trials), optimizer};
-  optimizer.set_min_objective(Objective::call, &objective);
-  optimizer.set_lower_bounds(0);
-  optimizer.set_upper_bounds(1);
-  optimizer.set_initial_step(std::max(first_step, 2 * description.resolution));
-  optimizer.set_xtol_abs(description.resolution);
-  // Places that are known cost nothing, but the search must not go on among them for ever.
-  optimizer.set_maxeval(static_cast<int>(10 * description.trials));
   std::vector<double> place;
   for (const ParameterDescription& parameter : trials.parameters())
     place.push_back(std::clamp(parameter.place(parameter.first_value()), 0.0, 1.0));
-  double least = 0;
-  try {
-    optimizer.optimize(place, least);
-  } catch (const nlopt::forced_stop&) {
-    // The objective says why.
-  } catch (const nlopt::roundoff_limited&) {
-    // No smaller step makes a difference.
-  } catch (const std::runtime_error&) {
-    // BOBYQA gives up where scatter hides the effect of its steps.
+  double least = std::numeric_limits<double>::infinity();
+  for (double step = first_step;; step = std::max(step / 2, 2 * description.resolution)) {
+    if (const auto end = search_from(trials, description, place, step)) return *end;
+    // Scatter may have led the steps astray: once more from the best place, as long as that helps.
+    const Trial& best = trials.all()[trials.best()];
+    if (description.algorithm == "crs" || best.failed() || trials.misfit(best) > worthwhile * least)
+      return SearchEnd::resolution;
+    least = trials.misfit(best);
+    place.assign(best.place.begin(), best.place.end());
   }
-  if (objective.thrown) std::rethrow_exception(objective.thrown);
-  return objective.end.value_or(SearchEnd::resolution);
 }
 
 }  // namespace grit
