@@ -97,9 +97,9 @@ std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell,
       if (length[k] > 0) share[k] = (x[k] - box.low[k]) / length[k];
     key[i] = morton(share);
   });
-  // Stretches of the curve, about as many as chunks, each of which one thread sorts.
+  // Stretches of the curve, at most as many as chunks, each of which one thread sorts.
   const auto bits = static_cast<int>(std::bit_width(morton(Vec3::Ones())));
-  const int shift = std::max(0, bits - static_cast<int>(std::bit_width(chunks_of(count))));
+  const int shift = std::max(0, bits + 1 - static_cast<int>(std::bit_width(chunks_of(count))));
   std::vector<std::uint32_t> start((std::size_t{1} << (bits - shift)) + 1, 0);
   for (const std::uint64_t one : key) ++start[(one >> shift) + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
