@@ -50,7 +50,10 @@ struct State {
   }
   const MotionSettings& motion_of(const Clump& clump) const { return motion_of(bodies.clumps.spheres[clump.first]); }
   /// Distances of surfaces up to which the law acts [m], for bodies of the largest radius.
-  std::vector<double> reaches() const { return settings.law->reaches(statistics.largest_radius); }
+  std::vector<double> reaches() const {
+    if (statistics.largest_radius == 0) return {};  // no bodies, or none yet: a law may divide by a radius
+    return settings.law->reaches(statistics.largest_radius);
+  }
   /// The next step of the leap-frog scheme. `energies`: whether work is summed up.
   MotionStep next_motion(bool energies) const;
   /// Whether the cell may change its shape in the next step.
