@@ -98,15 +98,16 @@ Description ParameterDescription::written(double value) const {
 
 void TargetDescription::declare(Parameters& p) {
   metric.declare_channels(p);
-  p.add("value", metric.value).doc("value that is wanted, in the unit of its channel");
-  p.add("curve", metric.curve).doc("curve that is wanted, for the types curve and profile");
+  p.add("value", metric.value).doc("target value, in the unit of its channel");
+  p.add("curve", metric.curve).doc("target curve, for the types curve and profile");
   p.add("tolerance", tolerance)
       .above(0)
       .required()
       .doc("difference that is accepted, such as the scatter of the laboratory, in the unit of the channel");
   p.check([this](const Complain& complain) {
     const char* const key = metric.is_curve() ? "curve" : "value";
-    if (metric.is_curve() ? !metric.curve : !metric.value) complain(key, "none", "what is wanted");
+    if (metric.is_curve() ? !metric.curve : !metric.value)
+      complain(key, "none", metric.is_curve() ? "a target curve" : "a target value");
     if (metric.is_curve() ? metric.value.has_value() : metric.curve.has_value())
       complain(metric.is_curve() ? "value" : "curve", "one with the type " + metric.what.type(),
                std::string("a ") + key + " only");

@@ -42,7 +42,7 @@ struct ParameterDescription {
 };
 
 struct TargetDescription {
-  MetricDescription metric;  ///< with the value or the curve that is wanted
+  MetricDescription metric;  ///< with the target value or curve
   double tolerance = 0;
 
   void declare(Parameters& p);

@@ -15,7 +15,7 @@ namespace grit {
 /// that cannot be read.
 std::vector<Observation> observations_of(const CalibrationDescription& calibration);
 
-/// What a run has found, by observation. Throws NumericsError if its curve covers too little of the one that is wanted.
+/// What a run has found, by observation. Throws NumericsError if its curve covers too little of the target curve.
 std::vector<double> found_in(const CalibrationDescription& calibration, const std::vector<Observation>& observations,
                              const std::map<std::string, Metric>& metrics);
 

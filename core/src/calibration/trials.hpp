@@ -72,7 +72,7 @@ class Trials {
   const Eigen::VectorXd& variance() const { return variance_; }
   /// Variance of the mean over a trial's samples.
   Eigen::VectorXd variance_of_mean() const;
-  /// Variance of what a trial finds against what is wanted: tolerance² + scatter²/samples.
+  /// Variance of the difference between a trial and its targets: tolerance² + scatter²/samples.
   Eigen::VectorXd uncertainty_squared() const;
   /// (found − wanted) over the square root of that. Not for failed trials.
   Eigen::VectorXd deviations(const Trial& trial) const;

@@ -122,7 +122,7 @@ LocalModel fitted_model(const Trials& trials, std::size_t centre, const std::vec
   return model;
 }
 
-/// Where the model expects the least misfit, by its directions that are told apart.
+/// Where the model expects the least misfit, by the directions that the targets determine.
 Eigen::VectorXd expected_optimum(const Trials& trials, std::size_t centre, const Uncertainty& known) {
   Eigen::VectorXd wanted = -known.model.at_centre;
   for (std::size_t i = 0; i < trials.observations().size(); ++i)

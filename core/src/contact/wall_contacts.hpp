@@ -88,8 +88,8 @@ class WallContacts {
   void renumber_walls(std::span<const std::uint32_t> now);
 
   /// Finds and evaluates the contacts of one chunk; adds to the sums of its bodies, and to `losses` unless it is
-  /// null. `again` if this instant has been evaluated before: forces are the same, and histories do not advance.
-  /// Returns the largest overlap over a radius.
+  /// null. `again` if this instant has been evaluated before: forces are the same up to rounding, and histories do not
+  /// advance. Returns the largest overlap over a radius.
   double evaluate(std::size_t chunk, const ContactLaw& law, const Bodies& bodies, bool one_material,
                   std::span<const WallSurface> walls, double dt, bool again, BodySum* sum, Losses* losses);
   /// Bodies have grown by `factor` to their present size; increases the overlaps accordingly.
