@@ -138,6 +138,19 @@ TEST_F(Resume, GivesTheSameAsARunThatWasNeverStopped) {
   EXPECT_EQ(again.out, "part: already complete\n");
 }
 
+/// Such a law is asked how far it reaches before there are bodies.
+TEST_F(Resume, ContinuesWithALawThatActsAcrossGaps) {
+  const std::vector<std::string> cohesive{"--set", R"(/contacts={"type": "linear-cohesive"})",
+                                          "--set", "/materials/sand/tensile_strength=\"600 Pa\"",
+                                          "--set", "/stages/0/until/value=40000"};
+  const auto whole = grit(run("whole", cohesive));
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  interrupt("part", cohesive);
+  const auto rest = grit({"run", "part", "--resume", "--no-report"});
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_EQ(text_of(folder / "part/packing.txt"), text_of(folder / "whole/packing.txt"));
+}
+
 /// The plane is drawn in the box of the first bodies, which a resumed run does not make again.
 TEST_F(Resume, DrawsAnUnboundedPlaneAsBefore) {
   const std::vector<std::string> on_a_plane{"--set", "/walls/box=null", "--set",
