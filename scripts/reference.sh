@@ -18,30 +18,39 @@ trap 'rm -rf "$pages"' EXIT
 listed=$("$grit" describe)
 # names HEADING: the names that `grit describe` lists under this heading.
 names() { sed -n "/^$1\$/,/^\$/{/^  /p}" <<< "$listed" | awk '{print $1}'; }
-# tables NAME…: the program's description of each, under a heading.
+# tables FOLDER NAME…: the program's description of each, under a heading, with a link to its README if that is in this folder.
 tables() {
-  local text
+  local folder=$1 name text readme
+  shift
   for name in "$@"; do
     text=$("$grit" describe "$name")
-    printf '\n## %s\n```text\n%s\n```\n' "$name" "$text"
+    readme=$folder/$name/README.md
+    printf '\n## %s\n' "$name"
+    [[ ! -f $readme ]] || printf '[Equations, range and sources](../../%s).\n\n' "$readme"
+    printf '```text\n%s\n```\n' "$text"
   done
 }
 page() { printf '# %s\nWritten by `scripts/reference.sh` from what `grit describe` says. Do not edit.\n' "$1"; }
 
 {
   page 'Sections of a description'
-  tables $(names 'sections of a description')
+  tables - $(names 'sections of a description')
 } > "$pages/sections.md"
 {
   page "Files for 'grit study' and 'grit calibrate'"
-  tables $(names "files for 'grit study' and 'grit calibrate'")
+  tables - $(names "files for 'grit study' and 'grit calibrate'")
 } > "$pages/study.md"
-for kind in body contact engine geometry probe scenario; do
-  {
-    page "Parameters of each $kind"
-    tables $(names "$kind")
-  } > "$pages/$kind.md"
-done
+# kind NAME PLURAL FOLDER: the page of a kind of plugin.
+kind() {
+  page "Parameters of $2"
+  tables "plugins/$3" $(names "$1")
+}
+kind body bodies bodies > "$pages/body.md"
+kind contact 'contact laws' contacts > "$pages/contact.md"
+kind engine engines engines > "$pages/engine.md"
+kind geometry geometries geometry > "$pages/geometry.md"
+kind probe probes probes > "$pages/probe.md"
+kind scenario scenarios scenarios > "$pages/scenario.md"
 
 if [[ -n $check ]]; then
   diff -ru docs/reference "$pages" || {
