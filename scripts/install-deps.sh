@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs the dependencies of grit on Debian 12. Needs root or sudo only if something is missing; can be run again.
-#   install-deps.sh [--run | --viewers | --sanitizers]
+#   install-deps.sh [--run | --viewers | --sanitizers | --site]
 #     --run         only what building and running grit needs: no libraries for tests and benchmarks
 #     --viewers     also Chromium and ParaView (1 GB), in which some tests open results as users do, and Doxygen
+#     --site        only what scripts/site.sh needs: Sphinx, its theme and Doxygen
 #     --sanitizers  also what scripts/sanitize.sh and scripts/fuzz.sh need: sanitizers, libFuzzer, names of functions in reports, valgrind
 set -euo pipefail
 
@@ -28,14 +29,16 @@ for_tests=(
   python3 python3-h5py               # tests of vector instructions and of the documentation
 )
 viewers=(chromium paraview python3-paraview xvfb doxygen)
+site=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton doxygen doxygen-awesome-css)
 sanitizers=(libclang-rt-16-dev llvm-16 valgrind)
 case ${1-} in
   --run) ;;
   '') packages+=("${for_tests[@]}") ;;
   --viewers) packages+=("${for_tests[@]}" "${viewers[@]}") ;;
   --sanitizers) packages+=("${for_tests[@]}" "${sanitizers[@]}") ;;
+  --site) packages=("${site[@]}") ;;
   *)
-    echo "install-deps: unknown option '$1'; usage: install-deps.sh [--run | --viewers | --sanitizers]" >&2
+    echo "install-deps: unknown option '$1'; usage: install-deps.sh [--run | --viewers | --sanitizers | --site]" >&2
     exit 1
     ;;
 esac

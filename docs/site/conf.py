@@ -1,4 +1,5 @@
 """Settings of the documentation as a site: Sphinx reads the pages of the whole tree as they are. scripts/site.sh builds it."""
+import gc
 import re
 import sys
 from pathlib import Path
@@ -8,7 +9,9 @@ from pygments.token import Error, Punctuation
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
+NORMALIZE = Path('/usr/share/javascript/normalize.css/normalize.css')
 sys.dont_write_bytecode = True
+gc.disable()  # a seventh of the time goes into searching trees of pages for garbage, of which there is little
 sys.path.insert(0, str(HERE))
 
 project = 'grit'
@@ -17,7 +20,7 @@ root_doc = 'README'
 include_patterns = ['**.md']
 exclude_patterns = ['build*', 'results*', '.*']
 
-extensions = ['myst_parser', 'sphinx_copybutton', 'navigation', 'files']
+extensions = ['myst_parser', 'sphinx_copybutton', 'navigation', 'files', 'typography']
 myst_heading_anchors = 6                                # those of GitHub
 smartquotes = False
 
@@ -29,9 +32,10 @@ html_copy_source = False
 html_show_copyright = False
 html_domain_indices = False
 html_use_index = False
+highlight_language = 'text'
 pygments_style = 'friendly'
 pygments_dark_style = 'monokai'
-copybutton_selector = 'div.highlight:not(.highlight-text *):not(.highlight-default *) > pre'
+copybutton_selector = 'div.highlight:not(.highlight-text *) > pre'
 
 
 class Excerpt(JsonLexer):
@@ -42,7 +46,16 @@ class Excerpt(JsonLexer):
             yield place, Punctuation if kind is Error and set(value) == {'…'} else kind, value
 
 
+def include_normalize(app, _error):
+    """Debian's theme loads this style from the root of a server, which readers of files do not have."""
+    theme = Path(app.outdir) / '_static/styles/furo.css'
+    if theme.is_file():
+        style = NORMALIZE.read_text(encoding='utf-8')
+        theme.write_text(theme.read_text(encoding='utf-8').replace('@import url(/javascript/normalize.css/normalize.css);', style), encoding='utf-8')
+
+
 def setup(app):
+    app.connect('build-finished', include_normalize)
     app.add_lexer('json', Excerpt)
     app.add_lexer('pvpython', PythonLexer)
     app.add_lexer('stl', TextLexer)

@@ -2,6 +2,7 @@
 
 Headers of the SDK are linked to Doxygen's pages if `sdk_tags` names its tag file, which lies beside them.
 """
+import functools
 import posixpath
 import shutil
 import xml.etree.ElementTree
@@ -69,12 +70,11 @@ class Files:
         return f'<ul class="files">{items}</ul>'
 
 
-def language(path):
-    name = Path(path).name
-    if name in LANGUAGES:
-        return LANGUAGES[name]
+@functools.lru_cache
+def language(kind):
+    """The name of Pygments' lexer for files of a kind, which is the end of their names or all of it."""
     try:
-        return get_lexer_for_filename(name).aliases[0]
+        return LANGUAGES.get(kind) or get_lexer_for_filename(f'x{kind}').aliases[0]
     except ClassNotFound:
         return 'text'
 
@@ -109,7 +109,7 @@ def write(app):
             shutil.copyfile(source, target)
             continue
         body = files.list_of(path) if source.is_dir() else app.builder.highlighter.highlight_block(
-            source.read_text(encoding='utf-8'), language(path), force=True, location=path)
+            source.read_text(encoding='utf-8'), language(source.suffix if source.suffix != '.txt' else source.name), force=True, location=path)
         folder, name = posixpath.split(path)
         above = f'<a href="{relative_uri(address, files.address(folder))}">{escape(folder)}</a>' if folder in files.linked else escape(folder)
         title = f'<h1 class="path">{above}/<wbr>{escape(name)}</h1>' if folder else f'<h1 class="path">{escape(name)}</h1>'

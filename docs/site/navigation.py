@@ -102,7 +102,7 @@ def lists(entry_list, pathto, titles, current, depth=1):
         inside = inside or here or below
         shown = ' current' if here or below else ''
         label = entry.label or titles[entry.page].astext()
-        href = pathto(entry.page) + (f'#{entry.anchor}' if entry.anchor else '')
+        href = f'{pathto(entry.page).rstrip("#")}#{entry.anchor}' if entry.anchor else pathto(entry.page)
         lines.append(f'<li class="toctree-l{depth}{shown}"><a class="reference internal{" current" if here else ""}" href="{href}">'
                      f'{escape(label)}</a>{children}</li>')
     return f'<ul{" class=current" if inside else ""}>{"".join(lines)}</ul>', inside
