@@ -9,7 +9,6 @@ from pygments.token import Error, Punctuation
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-NORMALIZE = Path('/usr/share/javascript/normalize.css/normalize.css')
 sys.dont_write_bytecode = True
 gc.disable()  # a seventh of the time goes into searching trees of pages for garbage, of which there is little
 sys.path.insert(0, str(HERE))
@@ -20,7 +19,7 @@ root_doc = 'README'
 include_patterns = ['**.md']
 exclude_patterns = ['build*', 'results*', '.*']
 
-extensions = ['myst_parser', 'sphinx_copybutton', 'navigation', 'files', 'typography']
+extensions = ['myst_parser', 'sphinx_copybutton', 'navigation', 'files', 'typography', 'theme']
 myst_heading_anchors = 6                                # those of GitHub
 smartquotes = False
 
@@ -46,16 +45,7 @@ class Excerpt(JsonLexer):
             yield place, Punctuation if kind is Error and set(value) == {'…'} else kind, value
 
 
-def include_normalize(app, _error):
-    """Debian's theme loads this style from the root of a server, which readers of files do not have."""
-    theme = Path(app.outdir) / '_static/styles/furo.css'
-    if theme.is_file():
-        style = NORMALIZE.read_text(encoding='utf-8')
-        theme.write_text(theme.read_text(encoding='utf-8').replace('@import url(/javascript/normalize.css/normalize.css);', style), encoding='utf-8')
-
-
 def setup(app):
-    app.connect('build-finished', include_normalize)
     app.add_lexer('json', Excerpt)
     app.add_lexer('pvpython', PythonLexer)
     app.add_lexer('stl', TextLexer)

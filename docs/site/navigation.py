@@ -83,9 +83,13 @@ def entries(root):
 def indexed(reader, page):
     """Pages that a listed page adds, being an index itself."""
     folder, name = posixpath.split(page)
-    below = {'README': folder}.get(name) if folder.startswith('docs/') else None
-    below = 'plugins' if folder == 'docs/reference' else below
-    return dict.fromkeys(link.page for link in reader.links(page, reader.tree(page)) if below and link.page.startswith(f'{below}/'))
+    if folder == 'docs/reference':
+        below = 'plugins/'
+    elif name == 'README' and folder.startswith('docs/'):
+        below = f'{folder}/'
+    else:
+        return []
+    return dict.fromkeys(link.page for link in reader.links(page, reader.tree(page)) if link.page.startswith(below))
 
 
 def pages(top):

@@ -86,6 +86,13 @@ class WholeSite(unittest.TestCase):
         loads |= {str(style) for style in self.site.rglob('*.css') if 'url(http' in style.read_text(encoding='utf-8') or '@import' in style.read_text(encoding='utf-8')}
         self.assertEqual(loads, set())
 
+    def test_scripts_and_colours_work_on_pages_read_from_files(self):
+        script = (self.site / '_static/scripts/furo.js').read_text(encoding='utf-8')
+        self.assertNotRegex(script, '(?m)^(import|export) ')
+        self.assertIn('root.Gumshoe = factory(root)', script)
+        self.assertRegex((self.site / '_static/styles/furo.css').read_text(encoding='utf-8'),
+                         r'prefers-color-scheme: dark\) \{ body:not\(\[data-theme="light"\]\) \{[^}]*--color-background-primary: #131416')
+
     def test_headers_are_those_of_doxygen(self):
         guide = self.site / 'docs/plugins/README.html'
         self.assertIn('../../sdk/index.html', self.pages[guide].links)
