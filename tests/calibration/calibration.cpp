@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/Core>
+#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <random>
 
 #include "calibration/calibration_page.hpp"
 #include "grit/error.hpp"
@@ -14,6 +17,7 @@ namespace grit {
 namespace {
 
 using testing::AllOf;
+using testing::AnyOf;
 using testing::Contains;
 using testing::ContainsRegex;
 using testing::HasSubstr;
@@ -65,6 +69,52 @@ TEST(Calibration, FindsKnownParametersWithinTheirErrors) {
   EXPECT_LT(trials_used / 10, 30);
 }
 
+/// A smooth problem of two parameters and three targets: slopes, curvatures and the known values are random.
+struct World {
+  Eigen::Matrix<double, 3, 2> slopes;
+  Eigen::Vector3d curvatures;
+  Eigen::Vector2d known;
+
+  explicit World(std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> part(0, 1);
+    do slopes = Eigen::Matrix<double, 3, 2>::NullaryExpr([&] { return 4 * part(random) - 2; });
+    while (Eigen::JacobiSVD<Eigen::MatrixXd>(slopes).singularValues()[1] < 1);  // the targets know both parameters
+    curvatures = Eigen::Vector3d::NullaryExpr([&] { return part(random) - 0.5; });
+    known = Eigen::Vector2d::NullaryExpr([&] { return 0.15 + 0.7 * part(random); });
+  }
+  std::vector<double> operator()(const std::vector<double>& values) const {
+    const Eigen::Vector2d at(values[0], values[1]);
+    const Eigen::Vector3d found = slopes * at + curvatures * (at.array() - 0.5).matrix().squaredNorm();
+    return {found.begin(), found.end()};
+  }
+};
+
+TEST(Calibration, FindsKnownParametersOfRandomProblemsInFewTrials) {
+  constexpr std::uint64_t worlds = 20;
+  constexpr double scatter = 0.12, tolerance = 0.03, start = 0.1;
+  std::size_t trials_used = 0;
+  int within = 0, met = 0;
+  for (std::uint64_t seed = 1; seed <= worlds; ++seed) {
+    const World world(seed);
+    const auto values = world({world.known[0], world.known[1]});
+    const auto calibration = described({{"a", parameter(0, 1, start)}, {"b", parameter(0, 1, start)}},
+                                       {{"one", {.wanted = values[0], .tolerance = tolerance}},
+                                        {"three", {.wanted = values[1], .tolerance = tolerance}},
+                                        {"two", {.wanted = values[2], .tolerance = tolerance}}});
+    Trials trials = trials_of(calibration, stand_in(world, {scatter, scatter, scatter}, 4, seed));
+    const auto outcome = calibrate(trials, calibration.optimizer);
+    trials_used += trials.all().size();
+    met += is_met(trials, outcome) ? 1 : 0;
+    const Eigen::ArrayXd off = (trials.all()[outcome.optimum].place - world.known).cwiseAbs(),
+                         error = outcome.uncertainty.standard_error;
+    within += (off <= 2 * error && error < 0.3).all() ? 1 : 0;
+  }
+  EXPECT_LE(trials_used, 380u);
+  EXPECT_GE(within, 18) << "two standard errors";
+  EXPECT_GE(met, 18);
+}
+
 TEST(Calibration, IsExactWithoutScatter) {
   auto calibration = strength_targets(0.1);
   calibration.optimizer.resolution = 0.001, calibration.optimizer.trials = 80;
@@ -99,14 +149,6 @@ TEST(Calibration, StopsWhereABetterFitWouldNotShow) {
     EXPECT_GT(exact.all().size(), trials.all().size());
   }
   EXPECT_GE(stopped, 3) << "of 10";
-}
-
-TEST(Calibration, SaysThatTrialsAreUsedUp) {
-  auto calibration = strength_targets(0.001);
-  calibration.optimizer.trials = 4;
-  Trials trials = trials_of(calibration, stand_in(strength, {0, 0, 0}, 1, 1));
-  EXPECT_EQ(search(trials, calibration.optimizer), SearchEnd::trials);
-  EXPECT_EQ(trials.all().size(), 4u);
 }
 
 TEST(Calibration, SaysThatNoBetterPlaceIsFoundForTargetsThatContradict) {
@@ -158,6 +200,76 @@ TEST(Calibration, ReportsAParameterWithoutEffect) {
   EXPECT_THAT(joined(verdict(calibration, trials, outcome)), HasSubstr("The targets do not determine idle: "));
   EXPECT_TRUE(std::isfinite(outcome.uncertainty.standard_error[0]));
   EXPECT_FALSE(std::isfinite(outcome.uncertainty.standard_error[1]));
+}
+
+// The slope of a parameter without effect is scatter: it must not spoil the error of the others.
+TEST(Calibration, LeavesAParameterWithoutEffectOutOfTheErrorsOfOthers) {
+  int known = 0;
+  for (std::uint64_t world = 1; world <= 20; ++world) {
+    const auto calibration =
+        described({{"friction", parameter(5, 40, 27)}, {"idle", parameter(0, 1, 0.2)}, {"other", parameter(0, 1, 0.5)}},
+                  {{"peak", {.wanted = 700, .tolerance = 10}}});
+    Trials trials = trials_of(
+        calibration,
+        stand_in([](const std::vector<double>& v) { return std::vector<double>{400 + 15 * v[0]}; }, {30}, 4, world));
+    const auto outcome = calibrate(trials, calibration.optimizer);
+    const Uncertainty& found = outcome.uncertainty;
+    if (!std::isfinite(found.standard_error[0]) || std::isfinite(found.standard_error[1]) ||
+        std::isfinite(found.standard_error[2]))
+      continue;
+    ++known;
+    EXPECT_EQ(found.covariance(0, 1), 0) << world;
+    EXPECT_EQ(found.correlation(0, 1), 0) << world;
+    EXPECT_EQ(found.correlation(2, 2), 1) << world;
+    EXPECT_THAT(joined(verdict(calibration, trials, outcome)),
+                AllOf(HasSubstr("The targets do not determine idle: "),
+                      HasSubstr("The targets do not determine other: "), Not(HasSubstr("friction"))))
+        << world;
+    EXPECT_THAT(calibration_page(calibration, trials, outcome), Not(AnyOf(HasSubstr("nan"), HasSubstr("inf"))))
+        << world;
+  }
+  EXPECT_GE(known, 16) << "of 20: scatter looks like an effect now and then";
+}
+
+TEST(Calibration, HasNoErrorsIfNoParameterHasAnEffect) {
+  const auto calibration = described({{"a", parameter(0, 1, 0.4)}, {"b", parameter(0, 1, 0.4)}},
+                                     {{"peak", {.wanted = 700, .tolerance = 10}}});
+  Trials trials =
+      trials_of(calibration, stand_in([](const std::vector<double>&) { return std::vector<double>{400}; }, {0}, 4, 1));
+  const auto outcome = calibrate(trials, calibration.optimizer);
+  EXPECT_FALSE(outcome.uncertainty.standard_error.array().isFinite().any());
+  EXPECT_THAT(joined(verdict(calibration, trials, outcome)),
+              AllOf(HasSubstr("The targets do not determine a: "), HasSubstr("The targets do not determine b: ")));
+}
+
+// Like a moment with a stiffness and a limit: from a start where both are 0, neither has an effect by itself.
+TEST(Calibration, GoesOnFromABetterTrialAroundTheOptimum) {
+  for (const char* algorithm : {"bobyqa", "cobyla"}) {
+    auto calibration = described({{"limit", parameter(0, 1, 0)}, {"stiffness", parameter(0, 1, 0)}},
+                                 {{"peak", {.wanted = 140, .tolerance = 1}}});
+    calibration.optimizer.algorithm = algorithm;
+    Trials trials = trials_of(
+        calibration,
+        stand_in([](const std::vector<double>& v) { return std::vector<double>{100 + 100 * std::min(v[0], v[1])}; },
+                 {1}, 3, 1));
+    const auto outcome = calibrate(trials, calibration.optimizer);
+    EXPECT_TRUE(is_met(trials, outcome)) << algorithm;
+    EXPECT_NEAR(std::min(trials.all()[outcome.optimum].values[0], trials.all()[outcome.optimum].values[1]), 0.4, 0.05);
+    EXPECT_LE(trials.all().size(), 40u + most_further_trials(2));
+  }
+}
+
+TEST(Calibration, DoesNotMixScatterIntoTheVerdictOfOneSample) {
+  const auto calibration = described({{"friction", parameter(5, 40, 27)}, {"idle", parameter(0, 1, 0.2)}},
+                                     {{"peak", {.wanted = 700, .tolerance = 5}}});
+  Trials trials =
+      trials_of(calibration,
+                stand_in([](const std::vector<double>& v) { return std::vector<double>{400 + 15 * v[0]}; }, {3}, 1, 2));
+  const auto outcome = calibrate(trials, calibration.optimizer);
+  EXPECT_THAT(joined(verdict(calibration, trials, outcome)),
+              AllOf(HasSubstr("All targets are met within tolerance.\n"), HasSubstr("idle"),
+                    Not(HasSubstr("than scatter does")), HasSubstr("With one sample the scatter is unknown")));
+  EXPECT_THAT(joined(target_texts(calibration, trials, outcome)), ContainsRegex("peak: [0-9.]+, target 700 ± 5, "));
 }
 
 TEST(Calibration, ReportsAParameterAtABound) {
@@ -271,6 +383,32 @@ TEST(Calibration, SearchesGloballyWithTheSamePopulation) {
     found.push_back(trials.all()[trials.best()].values[0]);
   }
   EXPECT_EQ(found[0], found[1]);
+}
+
+TEST(Calibration, DoesNoMoreTrialsThanAllowed) {
+  for (const char* algorithm : {"bobyqa", "cobyla", "crs"})
+    for (const int most : {1, 3, 7}) {
+      auto calibration = strength_targets(0.001);
+      calibration.optimizer.algorithm = algorithm, calibration.optimizer.trials = most;
+      Trials trials = trials_of(calibration, stand_in(strength, {0, 0, 0}, 1, 1));
+      EXPECT_EQ(search(trials, calibration.optimizer), SearchEnd::trials) << algorithm;
+      EXPECT_EQ(trials.all().size(), static_cast<std::size_t>(most)) << algorithm;
+    }
+}
+
+// crs evaluates its whole first population unless it is kept from it.
+TEST(Calibration, EvaluatesNothingAfterAnInterrupt) {
+  auto calibration = strength_targets(0.5);
+  for (const char* algorithm : {"bobyqa", "cobyla", "crs"}) {
+    calibration.optimizer.algorithm = algorithm;
+    int asked = 0;
+    Trials trials = trials_of(calibration, [&](std::size_t, const std::vector<double>&) -> std::vector<TrialSample> {
+      ++asked;
+      throw std::runtime_error("interrupted");
+    });
+    EXPECT_THROW(search(trials, calibration.optimizer), std::runtime_error) << algorithm;
+    EXPECT_EQ(asked, 1) << algorithm;
+  }
 }
 
 TEST(Calibration, IsWrittenWithAllTrials) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "format/duration.hpp"
 #include "format/number.hpp"
@@ -18,6 +19,8 @@ namespace {
 constexpr double at_bound = 0.01;
 /// Components of a direction that are named.
 constexpr double notable = 0.3;
+/// The search begins again from the best trial while the misfit falls to this part.
+constexpr double worthwhile = 0.9;
 
 std::string with_unit(const std::string& text, const std::string& unit) {
   return unit.empty() ? text : text + ' ' + unit;
@@ -41,13 +44,17 @@ std::string way_text(const Direction& direction, const std::vector<std::string>&
   return text;
 }
 
-std::string of_direction(const Direction& direction, const std::vector<std::string>& names) {
+/// What the deviations from targets are compared with. The scatter of a single sample is unknown.
+std::string limits_text(std::size_t samples) { return samples == 1 ? "tolerance" : "tolerance and scatter"; }
+
+std::string of_direction(const Direction& direction, const std::vector<std::string>& names, std::size_t samples) {
   std::vector<std::string> parts;
   for (std::size_t k = 0; k < names.size(); ++k)
     if (std::abs(direction.along[static_cast<Eigen::Index>(k)]) > notable) parts.push_back(names[k]);
   const std::string why = direction.resolved
                               ? fmt::format("is known to {:.0f} % of the ranges only", 100 * direction.standard_error)
-                              : "changes the targets by no more than scatter does";
+                          : samples == 1 ? "changes the targets by no more than the trials differ from a smooth surface"
+                                         : "changes the targets by no more than scatter does";
   if (parts.size() == 1) return fmt::format("The targets do not determine {}: to change it {}.", parts.front(), why);
   return fmt::format("The targets cannot tell {} apart: {} together {}.", fmt::join(parts, " and "),
                      way_text(direction, names), why);
@@ -117,11 +124,23 @@ std::size_t most_further_trials(std::size_t parameters) { return 2 * parameters 
 
 CalibrationOutcome calibrate(Trials& trials, const OptimizerDescription& optimizer) {
   CalibrationOutcome outcome;
-  outcome.end = search(trials, optimizer);
-  if (trials.all_failed())
-    throw NumericsError(
-        fmt::format("all {} trials failed, the first with {}", trials.all().size(), trials.all().front().failure()));
-  outcome.optimum = explore_optimum(trials, optimizer.resolution, most_further_trials(trials.parameters().size()));
+  const std::size_t further = most_further_trials(trials.parameters().size());
+  double least = std::numeric_limits<double>::infinity();
+  for (double step = first_step;; step = std::max(step / 2, 2 * optimizer.resolution)) {
+    outcome.end = search(trials, optimizer, step);
+    if (trials.all_failed())
+      throw NumericsError(
+          fmt::format("all {} trials failed, the first with {}", trials.all().size(), trials.all().front().failure()));
+    outcome.optimum = explore_optimum(trials, optimizer.resolution, further);
+    // Scatter may have led the search astray. Or its first steps, each of one parameter, had no effect, because two act
+    // only together. The trials around its optimum may show the way.
+    const double misfit = trials.misfit(trials.all()[trials.best()]);
+    if (outcome.end != SearchEnd::resolution || optimizer.algorithm == "crs" ||
+        trials.all().size() >= static_cast<std::size_t>(optimizer.trials) ||
+        trials.fits(trials.all()[outcome.optimum]) || misfit > worthwhile * least)
+      break;
+    least = misfit;
+  }
   outcome.uncertainty = uncertainty_at(trials, outcome.optimum);
   return outcome;
 }
@@ -158,11 +177,12 @@ std::vector<std::string> target_texts(const CalibrationDescription& calibration,
     const auto i = static_cast<Eigen::Index>(observation - trials.observations().begin());
     const std::string misfit = fmt::format("misfit {:.2g}", misfits[static_cast<Eigen::Index>(index++)]);
     if (target.metric.is_curve()) {
-      texts.push_back(fmt::format("{}: a curve ± {:.3g} wanted, {}", name, target.tolerance, misfit));
+      texts.push_back(fmt::format("{}: target curve ± {:.3g}, {}", name, target.tolerance, misfit));
       continue;
     }
-    const double error = std::sqrt(trials.variance()[i] / static_cast<double>(best.samples.size()));
-    texts.push_back(fmt::format("{}: {:.4g} ± {:.2g} found, {:.4g} ± {:.3g} wanted, {}", name, best.mean[i], error,
+    const std::string scatter =
+        best.samples.size() == 1 ? "" : fmt::format(" ± {:.2g}", std::sqrt(trials.variance_of_mean()[i]));
+    texts.push_back(fmt::format("{}: {:.4g}{}, target {:.4g} ± {:.3g}, {}", name, best.mean[i], scatter,
                                 observation->wanted, target.tolerance, misfit));
   }
   return texts;
@@ -173,17 +193,18 @@ std::vector<std::string> verdict(const CalibrationDescription& calibration, cons
   const Trial& best = trials.all()[outcome.optimum];
   const Eigen::VectorXd misfits = trials.misfits(best);
   const auto names = calibration.names();
+  const std::string limits = limits_text(best.samples.size());
   std::vector<std::string> missed, bounds, all;
   std::size_t index = 0;
   for (const auto& [name, target] : calibration.targets)
     if (const double misfit = misfits[static_cast<Eigen::Index>(index++)]; misfit > 1 && !is_met(trials, outcome))
-      missed.push_back(fmt::format("{} by {:.1f} times its tolerance and scatter", name, std::sqrt(misfit)));
+      missed.push_back(fmt::format("{} by {:.2g} times its {}", name, std::sqrt(misfit), limits));
   all.push_back(missed.empty()
-                    ? "All targets are met within tolerance and scatter."
+                    ? fmt::format("All targets are met within {}.", limits)
                     : fmt::format("Not all targets are met. The optimum misses {}.", fmt::join(missed, ", ")));
   all.push_back(fmt::format("The search ended because {}.", sentence_of(outcome.end)));
   for (const Direction& one : outcome.uncertainty.directions)
-    if (!one.is_told_apart()) all.push_back(of_direction(one, names));
+    if (!one.is_told_apart()) all.push_back(of_direction(one, names, best.samples.size()));
   std::size_t k = 0;
   for (const auto& [name, parameter] : calibration.parameters) {
     const double place = place_of(trials, outcome, k++);
@@ -192,7 +213,8 @@ std::vector<std::string> verdict(const CalibrationDescription& calibration, cons
   }
   if (!bounds.empty()) all.push_back(fmt::format("{}: a wider range may fit better.", fmt::join(bounds, ", ")));
   if (best.samples.size() == 1)
-    all.push_back("With one sample the scatter is unknown; errors are those of the tolerances alone.");
+    all.push_back(
+        "With one sample the scatter is unknown, so that the errors lack it; take several samples to know it.");
   if (const auto failed = std::ranges::count_if(trials.all(), &Trial::failed); failed > 0)
     all.push_back(fmt::format("{} of {} failed.", failed, counted(trials.all().size(), "trial", "trials")));
   all.push_back(fmt::format("{} of {}: {} on one core.", counted(trials.all().size(), "trial", "trials"),

@@ -34,7 +34,7 @@ bool is_met(const Trials& trials, const CalibrationOutcome& outcome);
 std::vector<std::string> parameter_texts(const CalibrationDescription& calibration, const Trials& trials,
                                          const CalibrationOutcome& outcome);
 
-/// "peak: 748 ± 5 found, 750 ± 20 wanted, misfit 0.01" of each target, in the units of the channels.
+/// "peak: 748 ± 5, target 750 ± 20, misfit 0.01" of each target, in the units of the channels.
 std::vector<std::string> target_texts(const CalibrationDescription& calibration, const Trials& trials,
                                       const CalibrationOutcome& outcome);
 

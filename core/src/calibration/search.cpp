@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <limits>
 #include <nlopt.hpp>
 #include <optional>
 #include <vector>
@@ -10,12 +9,8 @@
 namespace grit {
 namespace {
 
-/// First step as a part of each range.
-constexpr double first_step = 0.2;
 /// Misfit of a trial that failed, over the worst of the others; and without any.
 constexpr double worse = 2, bad = 1e3;
-/// The search begins again from its best place while it lowers the misfit to this part.
-constexpr double worthwhile = 0.9;
 
 /// BOBYQA needs two parameters.
 nlopt::algorithm algorithm_of(const std::string& name, std::size_t parameters) {
@@ -32,6 +27,8 @@ struct Objective {
   std::exception_ptr thrown{};
 
   double misfit_at(const std::vector<double>& place) {
+    // Not all algorithms stop at once: crs evaluates its whole first population.
+    if (end || thrown) return bad;
     const std::size_t index = trials.at(
         Eigen::Map<const Eigen::VectorXd>(place.data(), static_cast<Eigen::Index>(place.size())), TrialPurpose::search);
     const Trial& trial = trials.all()[index];
@@ -88,7 +85,7 @@ std::optional<SearchEnd> search_from(Trials& trials, const OptimizerDescription&
 const char* sentence_of(SearchEnd end) {
   switch (end) {
     case SearchEnd::fits:
-      return "the fit is within tolerance and scatter";
+      return "the targets are met";
     case SearchEnd::trials:
       return "the trials are used up";
     case SearchEnd::resolution:
@@ -97,21 +94,16 @@ const char* sentence_of(SearchEnd end) {
   return "";
 }
 
-SearchEnd search(Trials& trials, const OptimizerDescription& description) {
+SearchEnd search(Trials& trials, const OptimizerDescription& description, double step) {
   nlopt::srand(1);  // the population of crs
   std::vector<double> place;
   for (const ParameterDescription& parameter : trials.parameters())
     place.push_back(std::clamp(parameter.place(parameter.first_value()), 0.0, 1.0));
-  double least = std::numeric_limits<double>::infinity();
-  for (double step = first_step;; step = std::max(step / 2, 2 * description.resolution)) {
-    if (const auto end = search_from(trials, description, place, step)) return *end;
-    // Scatter may have led the steps astray: once more from the best place, as long as that helps.
+  if (!trials.all_failed()) {
     const Trial& best = trials.all()[trials.best()];
-    if (description.algorithm == "crs" || best.failed() || trials.misfit(best) > worthwhile * least)
-      return SearchEnd::resolution;
-    least = trials.misfit(best);
     place.assign(best.place.begin(), best.place.end());
   }
+  return search_from(trials, description, place, step).value_or(SearchEnd::resolution);
 }
 
 }  // namespace grit

@@ -1,11 +1,13 @@
 #include "calibration/uncertainty.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace grit {
 namespace {
@@ -16,6 +18,9 @@ constexpr double near = 0.3;
 constexpr double design_step = 0.2;
 /// A singular value counts if it exceeds that of scatter so many times.
 constexpr double significance = 2;
+/// A slope is known by itself unless those of other parameters, with which the trials change this one, raise its
+/// variance beyond this factor.
+constexpr double most_inflation = 4;
 /// Standard error along a direction, as a part of the ranges, from which the targets do not determine it.
 constexpr double spanning = 0.5;
 /// Components of a unit vector below this are left out of account.
@@ -122,6 +127,20 @@ LocalModel fitted_model(const Trials& trials, std::size_t centre, const std::vec
   return model;
 }
 
+/// Parameters whose effect on the targets exceeds that of scatter, alone or with others, and those without: the slopes
+/// of the latter are scatter, by which the others would seem to be correlated with them.
+std::pair<std::vector<Eigen::Index>, std::vector<Eigen::Index>> acting_and_idle(const Eigen::MatrixXd& slopes,
+                                                                                const Eigen::MatrixXd& covariance,
+                                                                                double noise) {
+  std::vector<Eigen::Index> acting, idle;
+  const Eigen::VectorXd inflation = covariance.diagonal().cwiseProduct(covariance.inverse().diagonal());
+  for (Eigen::Index k = 0; k < slopes.cols(); ++k) {
+    const bool shows = slopes.col(k).norm() > significance * std::sqrt(noise * covariance(k, k));
+    (shows || inflation[k] > most_inflation ? acting : idle).push_back(k);
+  }
+  return {acting, idle};
+}
+
 /// Where the model expects the least misfit, by the directions that the targets determine.
 Eigen::VectorXd expected_optimum(const Trials& trials, std::size_t centre, const Uncertainty& known) {
   Eigen::VectorXd wanted = -known.model.at_centre;
@@ -158,14 +177,18 @@ Uncertainty uncertainty_at(const Trials& trials, std::size_t centre) {
                     .covariance = {},
                     .correlation = {}};
   const Eigen::VectorXd weights = root_weights(trials);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(weights.asDiagonal() * known.model.jacobian, Eigen::ComputeFullV);
-  const Eigen::Index count = known.model.jacobian.cols();
+  const Eigen::MatrixXd slopes = weights.asDiagonal() * known.model.jacobian;
+  const Eigen::Index count = slopes.cols();
   const double noise = weights.cwiseAbs2().dot(known.model.noise);
+  const auto [acting, idle] = acting_and_idle(slopes, known.model.slope_covariance, noise);
+  using Svd = Eigen::JacobiSVD<Eigen::MatrixXd>;
+  const Svd svd = acting.empty() ? Svd() : Svd(slopes(Eigen::all, acting), Eigen::ComputeFullV);
   known.covariance = Eigen::MatrixXd::Zero(count, count);
   known.standard_error = Eigen::VectorXd::Zero(count);
-  for (Eigen::Index k = 0; k < count; ++k) {
+  for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(acting.size()); ++k) {
     Direction one;
-    one.along = svd.matrixV().col(k);
+    one.along = Eigen::VectorXd::Zero(count);
+    one.along(acting) = svd.matrixV().col(k);
     one.singular_value = k < svd.singularValues().size() ? svd.singularValues()[k] : 0;
     const double inverse = 1 / std::max(one.singular_value, least_singular_value);
     // Slopes that are zero would appear as large as this by scatter alone.
@@ -181,6 +204,14 @@ Uncertainty uncertainty_at(const Trials& trials, std::size_t centre) {
   known.standard_error = known.standard_error.cwiseSqrt();
   const Eigen::VectorXd errors = known.covariance.diagonal().cwiseSqrt();
   known.correlation = known.covariance.cwiseQuotient(errors * errors.transpose());
+  for (const Eigen::Index k : idle) {
+    constexpr double unknown = std::numeric_limits<double>::infinity();
+    known.directions.push_back(
+        {.along = Eigen::VectorXd::Unit(count, k), .singular_value = 0, .standard_error = unknown, .resolved = false});
+    known.standard_error[k] = known.covariance(k, k) = unknown;
+    known.correlation.row(k).setZero(), known.correlation.col(k).setZero();
+    known.correlation(k, k) = 1;
+  }
   return known;
 }
 
@@ -192,6 +223,12 @@ std::size_t explore_optimum(Trials& trials, double resolution, std::size_t most)
       const auto place = design_place(trials, centre);
       if (!place) break;
       trials.at(*place, TrialPurpose::design);
+    }
+    // A trial of the design may be far better.
+    if (const std::size_t best = trials.best();
+        trials.misfit(trials.all()[centre]) - trials.misfit(trials.all()[best]) > misfit_by_scatter(trials)) {
+      centre = best;
+      if (trials.all().size() < last) continue;
     }
     if (settled || trials.all().size() >= last) return centre;
     const Eigen::VectorXd expected = expected_optimum(trials, centre, uncertainty_at(trials, centre));

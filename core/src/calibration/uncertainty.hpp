@@ -33,7 +33,7 @@ struct Uncertainty {
   LocalModel model;
   std::vector<Direction> directions;  ///< the best known first
   Eigen::VectorXd standard_error;     ///< of the places; infinite for parameters that are not determined
-  Eigen::MatrixXd covariance;         ///< (Jᵀ W J)⁻¹ of the places
+  Eigen::MatrixXd covariance;         ///< (Jᵀ W J)⁻¹ of the places; without effect: infinite, and no covariance
   Eigen::MatrixXd correlation;
 };
 
