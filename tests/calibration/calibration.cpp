@@ -34,9 +34,9 @@ std::vector<double> strength(const std::vector<double>& values) {
 CalibrationDescription strength_targets(double tolerance_of_scatter) {
   const auto wanted = strength({18, 0.7});
   return described({{"a_friction", parameter(5, 40, 27)}, {"b_rolling", parameter(0.05, 5, 0.35, "log")}},
-                   {{"dilation", {.wanted = wanted[0], .tolerance = 0.002 * tolerance_of_scatter}},
-                    {"peak", {.wanted = wanted[1], .tolerance = 8 * tolerance_of_scatter}},
-                    {"residual", {.wanted = wanted[2], .tolerance = 5 * tolerance_of_scatter}}});
+                   {{"dilation", {.value = wanted[0], .tolerance = 0.002 * tolerance_of_scatter}},
+                    {"peak", {.value = wanted[1], .tolerance = 8 * tolerance_of_scatter}},
+                    {"residual", {.value = wanted[2], .tolerance = 5 * tolerance_of_scatter}}});
 }
 const std::vector<double> strength_scatter{0.004, 16, 10};
 
@@ -99,9 +99,9 @@ TEST(Calibration, FindsKnownParametersOfRandomProblemsInFewTrials) {
     const World world(seed);
     const auto values = world({world.known[0], world.known[1]});
     const auto calibration = described({{"a", parameter(0, 1, start)}, {"b", parameter(0, 1, start)}},
-                                       {{"one", {.wanted = values[0], .tolerance = tolerance}},
-                                        {"three", {.wanted = values[1], .tolerance = tolerance}},
-                                        {"two", {.wanted = values[2], .tolerance = tolerance}}});
+                                       {{"one", {.value = values[0], .tolerance = tolerance}},
+                                        {"three", {.value = values[1], .tolerance = tolerance}},
+                                        {"two", {.value = values[2], .tolerance = tolerance}}});
     Trials trials = trials_of(calibration, stand_in(world, {scatter, scatter, scatter}, 4, seed));
     const auto outcome = calibrate(trials, calibration.optimizer);
     trials_used += trials.all().size();
@@ -137,8 +137,8 @@ TEST(Calibration, StopsWhereABetterFitWouldNotShow) {
     ++stopped;
     const Trial& best = trials.all()[trials.best()];
     const Eigen::VectorXd off =
-        (best.mean - Eigen::Vector3d(trials.observations()[0].wanted, trials.observations()[1].wanted,
-                                     trials.observations()[2].wanted))
+        (best.mean - Eigen::Vector3d(trials.observations()[0].value, trials.observations()[1].value,
+                                     trials.observations()[2].value))
             .cwiseAbs();
     EXPECT_GT(off[1] / trials.observations()[1].tolerance + off[2] / trials.observations()[2].tolerance, 2)
         << "not by the tolerance";
@@ -154,7 +154,7 @@ TEST(Calibration, StopsWhereABetterFitWouldNotShow) {
 TEST(Calibration, SaysThatNoBetterPlaceIsFoundForTargetsThatContradict) {
   const auto calibration =
       described({{"a", parameter(0, 10, 3)}, {"b", parameter(0, 10, 3)}},
-                {{"one", {.wanted = 10, .tolerance = 0.1}}, {"two", {.wanted = 4, .tolerance = 0.1}}});
+                {{"one", {.value = 10, .tolerance = 0.1}}, {"two", {.value = 4, .tolerance = 0.1}}});
   Trials trials = trials_of(calibration, stand_in(
                                              [](const std::vector<double>& v) {
                                                return std::vector<double>{v[0] + v[1], v[0] + v[1]};
@@ -174,7 +174,7 @@ TEST(Calibration, ReportsParametersThatActAsAProductOnly) {
   for (std::uint64_t world = 1; world <= 5; ++world) {
     const auto calibration =
         described({{"stiffness", parameter(0.1, 10, 1, "log")}, {"width", parameter(0.1, 10, 1.5, "log")}},
-                  {{"force", {.wanted = 300, .tolerance = 5}}, {"root", {.wanted = 52, .tolerance = 1}}});
+                  {{"force", {.value = 300, .tolerance = 5}}, {"root", {.value = 52, .tolerance = 1}}});
     Trials trials = trials_of(calibration, stand_in(product, {10, 1}, 3, world));
     const auto outcome = calibrate(trials, calibration.optimizer);
     const auto& values = trials.all()[outcome.optimum].values;
@@ -191,7 +191,7 @@ TEST(Calibration, ReportsParametersThatActAsAProductOnly) {
 
 TEST(Calibration, ReportsAParameterWithoutEffect) {
   const auto calibration = described({{"friction", parameter(5, 40, 27)}, {"idle", parameter(0, 1, 0.5)}},
-                                     {{"peak", {.wanted = 700, .tolerance = 5}}});
+                                     {{"peak", {.value = 700, .tolerance = 5}}});
   Trials trials =
       trials_of(calibration,
                 stand_in([](const std::vector<double>& v) { return std::vector<double>{400 + 15 * v[0]}; }, {8}, 3, 2));
@@ -208,7 +208,7 @@ TEST(Calibration, LeavesAParameterWithoutEffectOutOfTheErrorsOfOthers) {
   for (std::uint64_t world = 1; world <= 20; ++world) {
     const auto calibration =
         described({{"friction", parameter(5, 40, 27)}, {"idle", parameter(0, 1, 0.2)}, {"other", parameter(0, 1, 0.5)}},
-                  {{"peak", {.wanted = 700, .tolerance = 10}}});
+                  {{"peak", {.value = 700, .tolerance = 10}}});
     Trials trials = trials_of(
         calibration,
         stand_in([](const std::vector<double>& v) { return std::vector<double>{400 + 15 * v[0]}; }, {30}, 4, world));
@@ -233,7 +233,7 @@ TEST(Calibration, LeavesAParameterWithoutEffectOutOfTheErrorsOfOthers) {
 
 TEST(Calibration, HasNoErrorsIfNoParameterHasAnEffect) {
   const auto calibration = described({{"a", parameter(0, 1, 0.4)}, {"b", parameter(0, 1, 0.4)}},
-                                     {{"peak", {.wanted = 700, .tolerance = 10}}});
+                                     {{"peak", {.value = 700, .tolerance = 10}}});
   Trials trials =
       trials_of(calibration, stand_in([](const std::vector<double>&) { return std::vector<double>{400}; }, {0}, 4, 1));
   const auto outcome = calibrate(trials, calibration.optimizer);
@@ -246,7 +246,7 @@ TEST(Calibration, HasNoErrorsIfNoParameterHasAnEffect) {
 TEST(Calibration, GoesOnFromABetterTrialAroundTheOptimum) {
   for (const char* algorithm : {"bobyqa", "cobyla"}) {
     auto calibration = described({{"limit", parameter(0, 1, 0)}, {"stiffness", parameter(0, 1, 0)}},
-                                 {{"peak", {.wanted = 140, .tolerance = 1}}});
+                                 {{"peak", {.value = 140, .tolerance = 1}}});
     calibration.optimizer.algorithm = algorithm;
     Trials trials = trials_of(
         calibration,
@@ -261,7 +261,7 @@ TEST(Calibration, GoesOnFromABetterTrialAroundTheOptimum) {
 
 TEST(Calibration, DoesNotMixScatterIntoTheVerdictOfOneSample) {
   const auto calibration = described({{"friction", parameter(5, 40, 27)}, {"idle", parameter(0, 1, 0.2)}},
-                                     {{"peak", {.wanted = 700, .tolerance = 5}}});
+                                     {{"peak", {.value = 700, .tolerance = 5}}});
   Trials trials =
       trials_of(calibration,
                 stand_in([](const std::vector<double>& v) { return std::vector<double>{400 + 15 * v[0]}; }, {3}, 1, 2));
@@ -273,7 +273,7 @@ TEST(Calibration, DoesNotMixScatterIntoTheVerdictOfOneSample) {
 }
 
 TEST(Calibration, ReportsAParameterAtABound) {
-  const auto calibration = described({{"friction", parameter(5, 15, 8)}}, {{"peak", {.wanted = 700, .tolerance = 5}}});
+  const auto calibration = described({{"friction", parameter(5, 15, 8)}}, {{"peak", {.value = 700, .tolerance = 5}}});
   Trials trials =
       trials_of(calibration,
                 stand_in([](const std::vector<double>& v) { return std::vector<double>{400 + 15 * v[0]}; }, {8}, 3, 2));
@@ -286,7 +286,7 @@ TEST(Calibration, ReportsAParameterAtABound) {
 TEST(Calibration, HasTheErrorOfAClosedForm) {
   const double slope = 15, scatter = 6, tolerance = 4;
   const auto calibration =
-      described({{"friction", parameter(5, 40, 27)}}, {{"peak", {.wanted = 700, .tolerance = tolerance}}});
+      described({{"friction", parameter(5, 40, 27)}}, {{"peak", {.value = 700, .tolerance = tolerance}}});
   Trials trials = trials_of(
       calibration, stand_in([&](const std::vector<double>& v) { return std::vector<double>{400 + slope * v[0]}; },
                             {scatter}, 50, 3));
@@ -355,7 +355,24 @@ TEST(Calibration, CountsAResultThatIsNoNumberAsFailed) {
                                              },
                                              {0, 0, 0}, 2, 1));
   EXPECT_TRUE(trials.all()[trials.at(Eigen::Vector2d(0.5, 0.5), TrialPurpose::search)].failed());
-  EXPECT_EQ(trials.all()[0].failure(), "seed 1: a target has no finite value");
+  EXPECT_EQ(trials.all()[0].failure(), "seed 1: a target has no value of at most 1e+50");
+}
+
+// A page once had a mark for each power of ten of the misfits, up to an infinite one.
+TEST(Calibration, DrawsMisfitsOfAnyMagnitude) {
+  const auto calibration =
+      described({{"a", parameter(0, 1, 0.5)}}, {{"peak", {.value = 1, .tolerance = least_tolerance}}});
+  Trials trials = trials_of(
+      calibration,
+      stand_in([](const std::vector<double>& v) { return std::vector<double>{most_magnitude * (v[0] - 0.51)}; }, {0}, 2,
+               1));
+  const auto outcome = calibrate(trials, calibration.optimizer);
+  EXPECT_TRUE(std::isfinite(trials.misfit(trials.all()[outcome.optimum])));
+  const std::string page = calibration_page(calibration, trials, outcome);
+  EXPECT_THAT(page, Not(AnyOf(HasSubstr("nan"), HasSubstr("inf"))));
+  std::size_t grid_lines = 0;
+  for (std::size_t at = 0; (at = page.find("class=\"grid\"", at)) != page.npos; ++at) ++grid_lines;
+  EXPECT_LT(grid_lines, 20u);
 }
 
 TEST(Calibration, EndsWithAnErrorIfAllTrialsFail) {

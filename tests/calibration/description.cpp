@@ -12,6 +12,7 @@ namespace grit {
 namespace {
 
 using nlohmann::json;
+using testing::AllOf;
 using testing::HasSubstr;
 
 class CalibrationDescriptions : public testing::Test {
@@ -76,7 +77,6 @@ TEST_F(CalibrationDescriptions, ReportWhatIsWrong) {
   EXPECT_THAT(fault("/samples/pointer", "/c"), HasSubstr("/samples/pointer: found /c, of which"));
   EXPECT_THAT(fault("/samples/count", 0), HasSubstr("/samples/count"));
   EXPECT_THAT(fault("/parameters", json::object()), HasSubstr("/parameters: found none"));
-  EXPECT_THAT(fault("/targets/peak/tolerance", 0), HasSubstr("above 0"));
   EXPECT_THAT(fault("/targets/peak/type", "curve"), HasSubstr("/targets/peak/curve: found none"));
   EXPECT_THAT(fault("/targets/peak/of", "q"), HasSubstr("probe/channel"));
   EXPECT_THAT(fault("/optimizer/algorithm", "newton"), HasSubstr("bobyqa"));
@@ -91,7 +91,59 @@ TEST_F(CalibrationDescriptions, ExtendOthers) {
   EXPECT_EQ(loaded().parameters.size(), 2u);
 }
 
-TEST_F(CalibrationDescriptions, CompareCurvesWhereTheyAreWanted) {
+TEST_F(CalibrationDescriptions, ReadTargetsWithUnits) {
+  written["targets"]["peak"].update({{"value", "200 kPa"}, {"tolerance", "5 kPa"}});
+  const auto observations = observations_of(loaded(), {}, {{"test/q", "Pa"}});
+  EXPECT_EQ(observations.front().value, 200e3);
+  EXPECT_EQ(observations.front().tolerance, 5e3);
+  written["targets"]["peak"].update({{"type", "position-of-maximum"}, {"value", "3 ms"}, {"tolerance", 1e-4}});
+  EXPECT_EQ(observations_of(loaded(), {}, {{"test/q", "Pa"}, {"test/time", "s"}}).front().value, 3e-3);
+  written["targets"]["peak"].update({{"against", "test/strain"}, {"value", "3 %"}});
+  EXPECT_EQ(observations_of(loaded(), {}, {{"test/q", "Pa"}, {"test/strain", "1"}}).front().value, 0.03);
+}
+
+TEST_F(CalibrationDescriptions, RefuseTargetsThatCannotBeComputedWith) {
+  const auto fault_of = [&](const json& value, const json& tolerance, const std::string& unit = "Pa") {
+    written["targets"]["peak"].update({{"value", value}, {"tolerance", tolerance}});
+    const auto calibration = loaded();
+    try {
+      observations_of(calibration, Document::load(folder / "calibration.json"), {{"test/q", unit}});
+    } catch (const DescriptionError& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(fault_of(1e40, 1e30), "none");
+  EXPECT_EQ(fault_of(0, 1e-50), "none");
+  EXPECT_THAT(
+      fault_of(1e160, 0.1),
+      HasSubstr("calibration.json:1: /targets/peak/value: found 1e+160; allowed is a magnitude of at most 1e+50"));
+  EXPECT_THAT(fault_of(-1e51, 1e45), HasSubstr("/targets/peak/value: found 1e+51"));
+  EXPECT_THAT(fault_of(3, 1e-300),
+              HasSubstr("/targets/peak/tolerance: found 1e-300; allowed is a number from 3e-12 to 1e+50"));
+  EXPECT_THAT(fault_of(0, 1e-60), HasSubstr("/targets/peak/tolerance: found 1e-60; allowed is a number from 1e-50"));
+  EXPECT_THAT(fault_of(3, 1e300), HasSubstr("/targets/peak/tolerance: found 1e+300"));
+  EXPECT_THAT(fault_of(3, 0), HasSubstr("/targets/peak/tolerance: found 0; allowed is a number above 0"));
+  EXPECT_THAT(
+      fault_of("3 mm", 0.1),
+      HasSubstr("/targets/peak/value: found the text \"3 mm\"; allowed is a number in Pa, or a text with a number "
+                "and one of Pa, kPa, MPa"));
+  EXPECT_THAT(fault_of("much", "5 m"), AllOf(HasSubstr("/targets/peak/value: found the text \"much\""),
+                                             HasSubstr("/targets/peak/tolerance: found the text \"5 m\"")));
+  EXPECT_THAT(fault_of("3 Pa", 0.1, ""), HasSubstr("allowed is a number in the unit of the channel"));
+  EXPECT_THAT(fault_of(json::array({1}), 0.1), HasSubstr("/targets/peak/value: found a list"));
+  folder.write("lab.csv", "strain,stress\n0,0\n0.1,-1e160\n");
+  written["targets"]["peak"] = {
+      {"type", "curve"}, {"of", "test/q"}, {"curve", {{"file", "lab.csv"}, {"x", "strain"}, {"y", "stress"}}}};
+  written["targets"]["peak"].erase("value");
+  const auto calibration = [&] {
+    written["targets"]["peak"]["tolerance"] = 1;
+    return loaded();
+  }();
+  EXPECT_THROW(observations_of(calibration, {}, {{"test/q", "Pa"}}), DescriptionError);
+}
+
+TEST_F(CalibrationDescriptions, CompareCurvesWhereTheTargetHasOne) {
   folder.write("lab.csv", "strain,stress\n0,0\n0.1,200\n0.2,100\n");
   written["targets"] = {{"curve",
                          {{"type", "curve"},
@@ -101,13 +153,13 @@ TEST_F(CalibrationDescriptions, CompareCurvesWhereTheyAreWanted) {
                           {"tolerance", 10}}},
                         {"end", {{"type", "last"}, {"of", "test/q"}, {"value", 90}, {"tolerance", 5}}}};
   const auto calibration = loaded();
-  const auto observations = observations_of(calibration);
+  const auto observations = observations_of(calibration, {}, {});
   ASSERT_EQ(observations.size(), 21u);
   double weight = 0;
   for (std::size_t i = 0; i < 20; ++i) weight += observations[i].weight;
   EXPECT_NEAR(weight, 1, 1e-12) << "a curve counts as one target";
   EXPECT_EQ(observations[19].at, 0.2);
-  EXPECT_EQ(observations[19].wanted, 100);
+  EXPECT_EQ(observations[19].value, 100);
   EXPECT_EQ(observations[20].target, 1u);
   std::map<std::string, Metric> metrics{{"curve", {{0, 0.195}, {0, 390}, "Pa", "1"}}, {"end", {{}, {77}, "Pa", ""}}};
   const auto found = found_in(calibration, observations, metrics);

@@ -54,7 +54,7 @@ inline CalibrationDescription described(const std::vector<std::pair<std::string,
   for (const auto& [name, one] : targets) {
     TargetDescription& target = all.targets[name];
     target.metric.what.choose("last");
-    target.metric.value = one.wanted, target.tolerance = one.tolerance;
+    target.value = one.value, target.tolerance = one.tolerance;
   }
   return all;
 }
@@ -65,7 +65,8 @@ inline Trials trials_of(const CalibrationDescription& calibration, EvaluateTrial
   std::vector<Observation> observations;
   for (const auto& [name, one] : calibration.parameters) parameters.push_back(one);
   for (const auto& [name, one] : calibration.targets)
-    observations.push_back({.target = observations.size(), .wanted = *one.metric.value, .tolerance = one.tolerance});
+    observations.push_back(
+        {.target = observations.size(), .value = one.value.get<double>(), .tolerance = one.tolerance.get<double>()});
   return {parameters, observations, std::move(evaluate)};
 }
 

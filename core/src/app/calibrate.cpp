@@ -16,13 +16,11 @@
 #include "app/trial_runs.hpp"
 #include "calibration/calibration.hpp"
 #include "calibration/calibration_page.hpp"
-#include "calibration/observations.hpp"
 #include "format/duration.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/text_file.hpp"
 #include "output/own_files.hpp"
-#include "output/reference_curve.hpp"
 #include "simulation/live_scene.hpp"
 #include "storage/atomic_file.hpp"
 #include "storage/parsed_json.hpp"
@@ -144,25 +142,11 @@ std::string values_text(const CalibrationDescription& calibration, const std::ve
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// Reads the curves of the targets. Throws DescriptionError.
-std::vector<Observation> checked_observations(const CalibrationDescription& calibration, const Document& written) {
-  std::vector<Problem> problems;
-  for (const auto& [name, target] : calibration.targets)
-    if (target.metric.curve) try {
-        read_reference(*target.metric.curve);
-      } catch (const FileError& error) {
-        problems.push_back(written.problem("/targets/" + pointer_token(name) + "/curve/file", error.what()));
-      }
-  if (!problems.empty()) throw DescriptionError(std::move(problems));
-  return observations_of(calibration);
-}
-
 CalibrationPlace place_of(const std::filesystem::path& file, const Options& options) {
   CalibrationPlace place;
   place.calibration = load_calibration(file);
   place.written = Document::load(file);
   place.out = options.has("out") ? std::filesystem::path(options.get<std::string>("out")) : "results" / file.stem();
-  place.observations = checked_observations(place.calibration, place.written);
   return place;
 }
 
@@ -183,7 +167,7 @@ ExitStatus calibrate_command(const std::vector<std::string>& words) {
   const std::filesystem::path file = options.only_word("calibration");
   options.warn_of_threads();
   const auto registry = options.registry();
-  const CalibrationPlace place = place_of(file, options);
+  CalibrationPlace place = place_of(file, options);
   const CalibrationDescription& calibration = place.calibration;
   const auto at_once = options.has("jobs") ? options.number("jobs")
                        : calibration.optimizer.runs_at_once > 0
@@ -196,9 +180,10 @@ ExitStatus calibrate_command(const std::vector<std::string>& words) {
   std::optional<Trials> trials;
   const TrialRuns runs(place, run_program(options), at_once, *registry, interrupted,
                        [&](std::size_t ended) { progress.show(*trials, ended); });
-  const Scene first = runs.check();
+  CheckedTrials checked = runs.check();
+  place.observations = std::move(checked.observations);
   if (options.has("dry-run")) {
-    print_plan(place, first, *registry, at_once, options.threads());
+    print_plan(place, checked.first, *registry, at_once, options.threads());
     return ExitStatus::done;
   }
   std::filesystem::create_directories(place.out);

@@ -32,16 +32,22 @@ std::string one_of(const std::string& found, const std::vector<std::string>& nam
 
 }  // namespace
 
-void check_metrics(const MetricsToCheck& of, const SceneDescription& scene) {
+void check_curves(const MetricsToCheck& of) {
   std::vector<Problem> problems;
-  const auto probes = std::views::keys(scene.probes);
-  for (const auto& [name, metric] : *of.metrics) {
+  for (const auto& [name, metric] : *of.metrics)
     if (metric.curve) try {
         read_reference(*metric.curve);
       } catch (const FileError& error) {
         problems.push_back(
             of.written->problem(pointer_of(of, name, "curve/file"), missing_file_text(error, metric.curve->file)));
       }
+  if (!problems.empty()) throw DescriptionError(std::move(problems));
+}
+
+void check_probes(const MetricsToCheck& of, const SceneDescription& scene) {
+  std::vector<Problem> problems;
+  const auto probes = std::views::keys(scene.probes);
+  for (const auto& [name, metric] : *of.metrics)
     for (const auto& [key, channel] : {std::pair("of", &metric.of), std::pair("against", &metric.against)}) {
       const std::string probe = channel->substr(0, channel->find('/'));
       if (probe.empty() || scene.probes.contains(probe)) continue;
@@ -49,21 +55,22 @@ void check_metrics(const MetricsToCheck& of, const SceneDescription& scene) {
                                              fmt::format("found the probe \"{}\", which is not in the scene", probe) +
                                                  one_of(probe, {probes.begin(), probes.end()})));
     }
-  }
   if (!problems.empty()) throw DescriptionError(std::move(problems));
 }
 
-void check_channels(const MetricsToCheck& of, const LiveScene& live, const Registry& registry) try {
+std::map<std::string, std::string> check_channels(const MetricsToCheck& of, const LiveScene& live,
+                                                  const Registry& registry) try {
   const SceneDescription& scene = live.now();
   const Components& components = live.components();
   const Kernel kernel(scene, components, prepare(live, registry, run_state(scene, components)), 1);
-  std::vector<std::string> all;
+  std::map<std::string, std::string> units;
   std::set<std::string> wide;  // several values per sample
   for (const auto& [name, probe] : scene.probes) {
-    for (const char* channel : {"time", "step"}) all.push_back(name + '/' + channel);
+    units[name + "/time"] = "s", units[name + "/step"] = "1";
     for (const Channel& channel : Observer(name, probe, components.probes.at(name), kernel.world()).group().channels) {
-      all.push_back(name + '/' + channel.name);
-      if (std::ranges::any_of(channel.shape, [](std::size_t n) { return n != 1; })) wide.insert(all.back());
+      units[name + '/' + channel.name] = channel.unit;
+      if (std::ranges::any_of(channel.shape, [](std::size_t n) { return n != 1; }))
+        wide.insert(name + '/' + channel.name);
     }
   }
   std::vector<Problem> problems;
@@ -73,7 +80,8 @@ void check_channels(const MetricsToCheck& of, const LiveScene& live, const Regis
       if (channel.empty()) continue;
       const std::string probe = channel.substr(0, channel.find('/') + 1);
       std::vector<std::string> own;
-      std::ranges::copy_if(all, std::back_inserter(own), [&](const auto& one) { return one.starts_with(probe); });
+      std::ranges::copy_if(std::views::keys(units), std::back_inserter(own),
+                           [&](const auto& one) { return one.starts_with(probe); });
       if (std::ranges::find(own, channel) == own.end())
         problems.push_back(of.written->problem(
             pointer_of(of, name, key),
@@ -87,8 +95,9 @@ void check_channels(const MetricsToCheck& of, const LiveScene& live, const Regis
     }
   }
   if (!problems.empty()) throw DescriptionError(std::move(problems));
+  return units;
 } catch (const NumericsError&) {
-  // If the usual settings fail at once, other variants may not.
+  return {};
 }
 
 }  // namespace grit

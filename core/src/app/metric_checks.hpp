@@ -18,10 +18,15 @@ struct MetricsToCheck {
   std::string section;  ///< pointer of the object of metrics
 };
 
-/// Checks probes and reference files of the metrics before any run. Throws DescriptionError.
-void check_metrics(const MetricsToCheck& of, const SceneDescription& scene);
+/// Checks reference files of the metrics before any run. Throws DescriptionError.
+void check_curves(const MetricsToCheck& of);
 
-/// Checks channels, which probes know only once they are bound to a world. Throws DescriptionError.
-void check_channels(const MetricsToCheck& of, const LiveScene& live, const Registry& registry);
+/// Checks probes of the metrics. Throws DescriptionError.
+void check_probes(const MetricsToCheck& of, const SceneDescription& scene);
+
+/// Checks channels, which probes know only once they are bound to a world. Returns the unit of each as PROBE/CHANNEL;
+/// none if the scene fails at once, which other values may not. Throws DescriptionError.
+std::map<std::string, std::string> check_channels(const MetricsToCheck& of, const LiveScene& live,
+                                                  const Registry& registry);
 
 }  // namespace grit

@@ -128,13 +128,14 @@ std::vector<StudyRun> missing_runs(const StudyPlace& place, const Options& optio
   const RunProgram program = run_program(options);
   const Document written = Document::load(place.file);
   const MetricsToCheck metrics{&study.metrics, &written, "/metrics"};
+  check_curves(metrics);
   CheckedRuns line(place, options.has("quiet"));
   for_each_run(place, [&](const Variant& variant, double seed, const std::filesystem::path& within) {
     line.next();
     const auto folder = place.out / within;
     const VariantScene one = scene_of(place, variant, seed, registry);
     const auto live = of_variant(place.file, variant, [&] { return std::make_unique<LiveScene>(one.scene); });
-    check_metrics(metrics, *one.scene.description);
+    check_probes(metrics, *one.scene.description);
     if (seed == study.seeds.values.front())
       if (const auto [other, is_new] = described.emplace(one.text, variant.name); !is_new)
         throw DescriptionError({written.problem(
@@ -163,11 +164,13 @@ std::map<std::filesystem::path, std::string> unusable_runs(const StudyPlace& pla
                                                            const Registry& registry) {
   std::map<std::filesystem::path, std::string> unusable;
   const Document written = Document::load(place.file);
+  const MetricsToCheck metrics{&place.study.metrics, &written, "/metrics"};
+  check_curves(metrics);
   CheckedRuns line(place, options.has("quiet"));
   for_each_run(place, [&](const Variant& variant, double seed, const std::filesystem::path& within) {
     line.next();
     const VariantScene one = scene_of(place, variant, seed, registry);
-    check_metrics({&place.study.metrics, &written, "/metrics"}, *one.scene.description);
+    check_probes(metrics, *one.scene.description);
     const auto folder = place.out / within;
     const auto run = read_run_json(folder);
     if (!run || !run->contains("description")) return;

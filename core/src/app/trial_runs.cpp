@@ -13,6 +13,7 @@
 #include "calibration/observations.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
+#include "output/plugins_used.hpp"
 #include "simulation/live_scene.hpp"
 #include "study/batch.hpp"
 #include "study/study_result.hpp"
@@ -74,7 +75,7 @@ Scene TrialRuns::scene(const std::vector<double>& values) const try {
   throw DescriptionError(std::move(problems));
 }
 
-Scene TrialRuns::check() const {
+CheckedTrials TrialRuns::check() const {
   const CalibrationDescription& calibration = place_.calibration;
   std::vector<double> first;
   for (const auto& [name, parameter] : calibration.parameters) first.push_back(parameter.first_value());
@@ -97,10 +98,11 @@ Scene TrialRuns::check() const {
   }
   const auto metrics = calibration.metrics();
   const MetricsToCheck targets{&metrics, &place_.written, "/targets"};
-  check_metrics(targets, *usual.description);
+  check_probes(targets, *usual.description);
   const LiveScene live(usual);
-  at_its_place(usual.document, [&] { check_channels(targets, live, registry_); });
-  return usual;
+  std::map<std::string, std::string> units;
+  at_its_place(usual.document, [&] { units = check_channels(targets, live, registry_); });
+  return {std::move(usual), observations_of(calibration, place_.written, units)};
 }
 
 std::vector<TrialSample> TrialRuns::operator()(std::size_t number, const std::vector<double>& values) const {

@@ -26,15 +26,20 @@ struct CalibrationPlace {
   std::vector<Observation> observations;
 };
 
+struct CheckedTrials {
+  Scene first;
+  std::vector<Observation> observations;
+};
+
 class TrialRuns {
  public:
   /// `waiting` is called several times a second with the number of a trial's runs that have ended.
   TrialRuns(const CalibrationPlace& place, RunProgram program, std::size_t at_once, const Registry& registry,
             const std::atomic<bool>& interrupted, std::function<void(std::size_t)> waiting);
 
-  /// Checks the pointers of the parameters, the ends of their ranges, and the channels of the targets. Returns the
-  /// scene of the first trial. Throws DescriptionError.
-  Scene check() const;
+  /// Checks the pointers of the parameters, the ends of their ranges, and the targets. Returns the
+  /// scene of the first trial, and what the targets ask of each run. Throws DescriptionError.
+  CheckedTrials check() const;
 
   /// Does the runs of a trial that its folder does not have; see EvaluateTrial. Throws Interrupted, and FileError for a
   /// run that failed by other means than its numerics.

@@ -104,7 +104,7 @@ Description to_json(const CalibrationDescription& calibration, const Trials& tri
     directions.push_back({{"along", list(one.along)},
                           {"singular_value", one.singular_value},
                           {"resolved", one.resolved},
-                          {"told_apart", one.is_told_apart()}});
+                          {"determined", one.is_determined()}});
   return {{"trial", outcome.optimum},
           {"met", is_met(trials, outcome)},
           {"search_ended_because", sentence_of(outcome.end)},
@@ -177,13 +177,13 @@ std::vector<std::string> target_texts(const CalibrationDescription& calibration,
     const auto i = static_cast<Eigen::Index>(observation - trials.observations().begin());
     const std::string misfit = fmt::format("misfit {:.2g}", misfits[static_cast<Eigen::Index>(index++)]);
     if (target.metric.is_curve()) {
-      texts.push_back(fmt::format("{}: target curve ± {:.3g}, {}", name, target.tolerance, misfit));
+      texts.push_back(fmt::format("{}: target curve ± {:.3g}, {}", name, observation->tolerance, misfit));
       continue;
     }
     const std::string scatter =
         best.samples.size() == 1 ? "" : fmt::format(" ± {:.2g}", std::sqrt(trials.variance_of_mean()[i]));
     texts.push_back(fmt::format("{}: {:.4g}{}, target {:.4g} ± {:.3g}, {}", name, best.mean[i], scatter,
-                                observation->wanted, target.tolerance, misfit));
+                                observation->value, observation->tolerance, misfit));
   }
   return texts;
 }
@@ -204,7 +204,7 @@ std::vector<std::string> verdict(const CalibrationDescription& calibration, cons
                     : fmt::format("Not all targets are met. The optimum misses {}.", fmt::join(missed, ", ")));
   all.push_back(fmt::format("The search ended because {}.", sentence_of(outcome.end)));
   for (const Direction& one : outcome.uncertainty.directions)
-    if (!one.is_told_apart()) all.push_back(of_direction(one, names, best.samples.size()));
+    if (!one.is_determined()) all.push_back(of_direction(one, names, best.samples.size()));
   std::size_t k = 0;
   for (const auto& [name, parameter] : calibration.parameters) {
     const double place = place_of(trials, outcome, k++);
@@ -228,7 +228,7 @@ Description to_json(const CalibrationDescription& calibration, const Description
   for (const Observation& one : trials.observations())
     observations.push_back({{"target", std::next(calibration.targets.begin(), static_cast<int>(one.target))->first},
                             {"at", std::isnan(one.at) ? Description() : Description(one.at)},
-                            {"wanted", one.wanted},
+                            {"value", one.value},
                             {"tolerance", one.tolerance},
                             {"weight", one.weight}});
   for (const Trial& trial : trials.all()) all.push_back(to_json(trials, trial));

@@ -23,8 +23,10 @@ const std::string of_first = fmt::format("stroke:{}", series_colours[6]),
 
 /// An axis of logarithms.
 AxisTicks powers_of_ten(double low, double high) {
+  constexpr double most_marks = 8;
   AxisTicks axis{std::floor(low), std::max(std::ceil(high), std::floor(low) + 1), 1, {}};
-  for (double mark = axis.low; mark <= axis.high; ++mark) axis.marks.push_back(mark);
+  axis.step = std::ceil((axis.high - axis.low) / most_marks);
+  for (double mark = axis.low; mark <= axis.high; mark += axis.step) axis.marks.push_back(mark);
   return axis;
 }
 
@@ -110,24 +112,24 @@ std::string target_chart(const Trials& trials, std::size_t optimum, std::size_t 
   const auto include = [&](double value) { low = std::min(low, value), high = std::max(high, value); };
   auto row = mine.begin() - trials.observations().begin();
   for (const Observation& one : mine) {
-    include(one.wanted - one.tolerance), include(one.wanted + one.tolerance);
+    include(one.value - one.tolerance), include(one.value + one.tolerance);
     include(best.mean[row]), include(first->mean[row]);
     ++row;
   }
   Plot plot(name, axis_ticks(mine.front().at, mine.back().at, AxisEnds::kept),
             axis_ticks(low, high, AxisEnds::whole_steps));
   plot.draw_axes(metric.against.empty() ? "abscissa" : metric.against, name, false);
-  std::vector<Point> wanted, above, below, found, began;
+  std::vector<Point> target_points, above, below, found, began;
   row -= static_cast<std::ptrdiff_t>(mine.size());
   for (const Observation& one : mine) {
-    wanted.push_back(plot.at(one.at, one.wanted));
-    above.push_back(plot.at(one.at, one.wanted + one.tolerance));
-    below.push_back(plot.at(one.at, one.wanted - one.tolerance));
+    target_points.push_back(plot.at(one.at, one.value));
+    above.push_back(plot.at(one.at, one.value + one.tolerance));
+    below.push_back(plot.at(one.at, one.value - one.tolerance));
     found.push_back(plot.at(one.at, best.mean[row])), began.push_back(plot.at(one.at, first->mean[row]));
     ++row;
   }
   plot.svg.polyline(above, "class=\"wish\""), plot.svg.polyline(below, "class=\"wish\"");
-  for (const Point& point : wanted) plot.svg.circle(point, 3, "class=\"wanted\"");
+  for (const Point& point : target_points) plot.svg.circle(point, 3, "class=\"target\"");
   plot.svg.polyline(began, "class=\"curve\" style=\"" + of_first + '"');
   plot.svg.polyline(found, "class=\"curve\" style=\"" + of_best + '"');
   plot.legend(10, of_first, "first trial"), plot.legend(26, of_best, "best trial");
@@ -153,7 +155,7 @@ std::string deviation_chart(const Trials& trials, std::size_t optimum, const std
             92 + 44 * rows);
   const Point corner = plot.at(-1, rows), other = plot.at(1, 0);
   plot.svg.rectangle(corner, other.x - corner.x, other.y - corner.y, "class=\"floor\"");
-  plot.draw_abscissa("(found − wanted) / √(tolerance² + scatter²/samples)");
+  plot.draw_abscissa("(found − target) / √(tolerance² + scatter²/samples)");
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const double up = rows - static_cast<double>(i) - 0.5;
     plot.svg.text({plot.at(0, up).x + 6, plot.at(0, up).y - 10}, targets[i], "class=\"small\"");

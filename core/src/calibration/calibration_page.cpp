@@ -72,7 +72,7 @@ svg{width:100%;height:auto}
 text{font-family:inherit;font-size:12px;fill:var(--ink)}
 .axis{font-size:13px;font-weight:600}.small{font-size:11px;fill:var(--soft)}.m{text-anchor:middle}.e{text-anchor:end}
 .grid{stroke:var(--line)}.frame{stroke:var(--frame)}.floor{fill:var(--band)}.wish{fill:none;stroke:var(--over);stroke-dasharray:5 4}
-.curve{fill:none;stroke-width:2}.front{fill:none;stroke:var(--frame)}.wanted{fill:var(--over)}
+.curve{fill:none;stroke-width:2}.front{fill:none;stroke:var(--frame)}.target{fill:var(--over)}
 .failed{fill:var(--over);color:var(--over)}tr.best{background:var(--band)}
 )";
 

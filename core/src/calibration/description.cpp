@@ -98,20 +98,24 @@ Description ParameterDescription::written(double value) const {
 
 void TargetDescription::declare(Parameters& p) {
   metric.declare_channels(p);
-  p.add("value", metric.value).doc("target value, in the unit of its channel");
+  p.add("value", value).doc("target value: a number in the unit of its channel, or a text with a unit");
   p.add("curve", metric.curve).doc("target curve, for the types curve and profile");
   p.add("tolerance", tolerance)
-      .above(0)
       .required()
-      .doc("difference that is accepted, such as the scatter of the laboratory, in the unit of the channel");
+      .doc("difference that is accepted, such as the scatter of the laboratory: a number or text, as the value");
   p.check([this](const Complain& complain) {
     const char* const key = metric.is_curve() ? "curve" : "value";
-    if (metric.is_curve() ? !metric.curve : !metric.value)
+    if (metric.is_curve() ? !metric.curve : value.is_null())
       complain(key, "none", metric.is_curve() ? "a target curve" : "a target value");
-    if (metric.is_curve() ? metric.value.has_value() : metric.curve.has_value())
+    if (metric.is_curve() ? !value.is_null() : metric.curve.has_value())
       complain(metric.is_curve() ? "value" : "curve", "one with the type " + metric.what.type(),
                std::string("a ") + key + " only");
   });
+}
+
+std::string TargetDescription::channel() const {
+  if (!std::holds_alternative<PositionOfMaximumMetric>(metric.what.value())) return metric.of;
+  return metric.against.empty() ? metric.of.substr(0, metric.of.find('/')) + "/time" : metric.against;
 }
 
 void SamplesDescription::declare(Parameters& p) {

@@ -42,10 +42,12 @@ struct ParameterDescription {
 };
 
 struct TargetDescription {
-  MetricDescription metric;  ///< with the target value or curve
-  double tolerance = 0;
+  MetricDescription metric;  ///< with the target curve
+  Description value, tolerance;
 
   void declare(Parameters& p);
+  /// The channel in whose unit the value and the tolerance are.
+  std::string channel() const;
 };
 
 struct SamplesDescription {

@@ -58,8 +58,8 @@ std::size_t Trials::at(const Eigen::VectorXd& place, TrialPurpose purpose) {
 
   trial.samples = evaluate_(all_.size(), trial.values);
   for (TrialSample& sample : trial.samples)
-    if (!std::ranges::all_of(sample.found, [](double value) { return std::isfinite(value); }))
-      sample.found.clear(), sample.failure = "a target has no finite value";
+    if (!std::ranges::all_of(sample.found, [](double value) { return std::abs(value) <= most_magnitude; }))
+      sample.found.clear(), sample.failure = fmt::format("a target has no value of at most {:g}", most_magnitude);
   if (std::ranges::none_of(trial.samples, [](const TrialSample& sample) { return sample.found.empty(); })) {
     trial.mean = Eigen::VectorXd::Zero(variance_.size());
     for (const TrialSample& sample : trial.samples)
@@ -98,7 +98,7 @@ Eigen::VectorXd Trials::uncertainty_squared() const {
 
 Eigen::VectorXd Trials::deviations(const Trial& trial) const {
   Eigen::VectorXd all = trial.mean;
-  for (std::size_t i = 0; i < observations_.size(); ++i) all[static_cast<Eigen::Index>(i)] -= observations_[i].wanted;
+  for (std::size_t i = 0; i < observations_.size(); ++i) all[static_cast<Eigen::Index>(i)] -= observations_[i].value;
   return all.cwiseQuotient(uncertainty_squared().cwiseSqrt());
 }
 

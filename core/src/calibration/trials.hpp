@@ -14,11 +14,16 @@
 
 namespace grit {
 
+/// Of targets, tolerances and what runs find: squares of their ratios stay far within the range of numbers.
+inline constexpr double most_magnitude = 1e50, least_tolerance = 1e-50;
+/// A tolerance below this part of its target is lost in the digits of numbers.
+inline constexpr double least_relative_tolerance = 1e-12;
+
 /// A number that a run is to meet: a target, or a point of a target that is a curve.
 struct Observation {
   std::size_t target = 0;                                ///< index in the order of names
   double at = std::numeric_limits<double>::quiet_NaN();  ///< abscissa of the point of a curve
-  double wanted = 0, tolerance = 1;
+  double value = 0, tolerance = 1;
   double weight = 1;  ///< those of the points of a curve add up to 1: it counts as one target
 };
 
@@ -50,7 +55,8 @@ struct Trial {
   double core_seconds() const;
 };
 
-/// Runs the samples of a trial, of which `number` counts from 0. Samples with a NaN count as failed.
+/// Runs the samples of a trial, of which `number` counts from 0. Samples with a NaN or a number beyond most_magnitude
+/// count as failed.
 using EvaluateTrial = std::function<std::vector<TrialSample>(std::size_t number, const std::vector<double>& values)>;
 
 /// Trials in their order; each place is evaluated once.
@@ -74,7 +80,7 @@ class Trials {
   Eigen::VectorXd variance_of_mean() const;
   /// Variance of the difference between a trial and its targets: tolerance² + scatter²/samples.
   Eigen::VectorXd uncertainty_squared() const;
-  /// (found − wanted) over the square root of that. Not for failed trials.
+  /// (found − target) over the square root of that. Not for failed trials.
   Eigen::VectorXd deviations(const Trial& trial) const;
   /// Mean square of a target's deviations, by target.
   Eigen::VectorXd misfits(const Trial& trial) const;

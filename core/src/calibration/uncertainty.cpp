@@ -143,15 +143,15 @@ std::pair<std::vector<Eigen::Index>, std::vector<Eigen::Index>> acting_and_idle(
 
 /// Where the model expects the least misfit, by the directions that the targets determine.
 Eigen::VectorXd expected_optimum(const Trials& trials, std::size_t centre, const Uncertainty& known) {
-  Eigen::VectorXd wanted = -known.model.at_centre;
+  Eigen::VectorXd lacking = -known.model.at_centre;
   for (std::size_t i = 0; i < trials.observations().size(); ++i)
-    wanted[static_cast<Eigen::Index>(i)] += trials.observations()[i].wanted;
+    lacking[static_cast<Eigen::Index>(i)] += trials.observations()[i].value;
   const Eigen::VectorXd weights = root_weights(trials);
   Eigen::VectorXd step = Eigen::VectorXd::Zero(trials.all()[centre].place.size());
   for (const Direction& one : known.directions) {
-    if (!one.is_told_apart()) continue;
+    if (!one.is_determined()) continue;
     const Eigen::VectorXd change = weights.cwiseProduct(known.model.jacobian * one.along);
-    step += one.along * change.dot(weights.cwiseProduct(wanted)) / change.squaredNorm();
+    step += one.along * change.dot(weights.cwiseProduct(lacking)) / change.squaredNorm();
   }
   if (const double size = step.lpNorm<Eigen::Infinity>(); size > near) step *= near / size;
   return (trials.all()[centre].place + step).cwiseMax(0).cwiseMin(1);
@@ -159,7 +159,7 @@ Eigen::VectorXd expected_optimum(const Trials& trials, std::size_t centre, const
 
 }  // namespace
 
-bool Direction::is_told_apart() const { return resolved && standard_error < spanning; }
+bool Direction::is_determined() const { return resolved && standard_error < spanning; }
 
 LocalModel local_model(const Trials& trials, std::size_t centre) {
   const auto near_ones = neighbours(trials, centre);

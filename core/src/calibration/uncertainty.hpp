@@ -26,7 +26,7 @@ struct Direction {
   double singular_value = 0;   ///< change of the deviations for a unit step
   double standard_error = 0;   ///< of the place along it
   bool resolved = true;        ///< whether the change exceeds what scatter would show without one
-  bool is_told_apart() const;  ///< resolved, and known to better than half of the ranges
+  bool is_determined() const;  ///< resolved, and known to better than half of the ranges
 };
 
 struct Uncertainty {
