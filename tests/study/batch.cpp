@@ -1,8 +1,13 @@
 #include "study/batch.hpp"
 
 #include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "grit/error.hpp"
 #include "support/program.hpp"
@@ -60,7 +65,37 @@ TEST_F(Batch, StopsAllWhenOneGoesWrong) {
 }
 
 TEST_F(Batch, SaysWhatCannotBeStarted) {
-  EXPECT_THROW(run({BatchJob{{"/no/such/program"}, folder / "log.txt"}}, 1), FileError);
+  const auto fault = [&](const BatchJob& job) {
+    try {
+      run({job}, 1);
+    } catch (const FileError& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(fault({{"/no/such/program"}, folder / "log.txt"}),
+            "/no/such/program cannot be started: No such file or directory");
+  std::filesystem::create_directory(folder / "taken");
+  EXPECT_THAT(fault({{"true"}, folder / "taken"}), testing::HasSubstr("taken: cannot write it: Is a directory"));
+  EXPECT_EQ(fault({{"true"}, folder / "log.txt"}), "none") << "found in PATH";
+}
+
+TEST_F(Batch, EndsWithTheProcessThatStartedIt) {
+  // Programs without a parent become children of this process.
+  ASSERT_EQ(::prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
+  const pid_t batch = ::fork();
+  if (batch == 0) {
+    run({shell_job("cd " + folder.path().string() + "; echo $$ > pid; exec sleep 1000")}, 1);
+    ::_exit(0);
+  }
+  while (!text_of(folder / "pid").ends_with('\n')) std::this_thread::yield();
+  const pid_t program = std::stoi(text_of(folder / "pid"));
+  ::kill(batch, SIGKILL);
+  int how = 0;
+  ASSERT_EQ(::waitpid(batch, nullptr, 0), batch);
+  ASSERT_EQ(::waitpid(program, &how, 0), program);
+  EXPECT_TRUE(WIFSIGNALED(how));
+  EXPECT_EQ(WTERMSIG(how), SIGTERM);
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstring>
 #include <map>
 #include <thread>
@@ -19,32 +21,56 @@ namespace {
 
 constexpr auto poll_interval = std::chrono::milliseconds(50);
 
+/// In the child: becomes the program, which gets SIGTERM when its parent ends, even if that is killed. Returns only if
+/// it cannot be started.
+void become(char* const* words, int log, pid_t parent, const sigset_t& usual) {
+  // Programs such as scripts expect these signals to end them.
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGINT, SIGTERM, SIGXCPU}) std::signal(signal, SIG_DFL);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  ::sigprocmask(SIG_SETMASK, &usual, nullptr);
+  if (::getppid() != parent) ::raise(SIGTERM);  // it ended before that
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  if (nothing >= 0 && ::dup2(nothing, STDIN_FILENO) >= 0 && ::dup2(log, STDOUT_FILENO) >= 0 &&
+      ::dup2(log, STDERR_FILENO) >= 0)
+    ::execvp(words[0], words);
+}
+
+/// Throws FileError. posix_spawn cannot ask for a signal at the end of the parent.
 pid_t start(const BatchJob& job) {
   std::vector<char*> words;
   for (const auto& word : job.words) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
   std::filesystem::create_directories(job.log.parent_path());
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, job.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-  // Programs such as scripts expect these signals to end them.
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t usual;
-  sigemptyset(&usual);
-  for (const int signal : {SIGPIPE, SIGXFSZ}) sigaddset(&usual, signal);
-  posix_spawnattr_setsigdefault(&attributes, &usual);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-  pid_t pid = 0;
-  const int error = ::posix_spawnp(&pid, words.front(), &files, &attributes, words.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  if (error != 0)
-    throw FileError(job.words.front() + " cannot be started, or " + job.log.string() +
-                    " cannot be written: " + std::strerror(error));
-  return pid;
+  const int log = ::open(job.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (log < 0) throw FileError(job.log.string() + ": cannot write it: " + std::strerror(errno));
+  // The child reports why it could not become the program; otherwise that closes the pipe.
+  int pipe[2] = {-1, -1};
+  int fault = ::pipe2(pipe, O_CLOEXEC) == 0 ? 0 : errno;
+  pid_t child = -1;
+  if (fault == 0) {
+    sigset_t all, usual;
+    sigfillset(&all);
+    ::sigprocmask(SIG_SETMASK, &all, &usual);  // the handlers of the parent are not for the child
+    const pid_t parent = ::getpid();
+    child = ::fork();
+    if (child == 0) {
+      become(words.data(), log, parent, usual);
+      const int why = errno;
+      static_cast<void>(!::write(pipe[1], &why, sizeof why));
+      for (;;) ::pause();  // the parent kills it, so that none of its destructors run here
+    }
+    if (child < 0) fault = errno;
+    ::sigprocmask(SIG_SETMASK, &usual, nullptr);
+    ::close(pipe[1]);
+    ssize_t count = 0;
+    do count = child < 0 ? 0 : ::read(pipe[0], &fault, sizeof fault);
+    while (count < 0 && errno == EINTR);
+    ::close(pipe[0]);
+  }
+  ::close(log);
+  if (fault == 0) return child;
+  if (child > 0) ::kill(child, SIGKILL), ::waitpid(child, nullptr, 0);
+  throw FileError(job.words.front() + " cannot be started: " + std::strerror(fault));
 }
 
 }  // namespace
