@@ -19,11 +19,9 @@
 #include "format/duration.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
-#include "grit/toolkit/text_file.hpp"
 #include "output/own_files.hpp"
 #include "simulation/live_scene.hpp"
 #include "storage/atomic_file.hpp"
-#include "storage/parsed_json.hpp"
 
 namespace grit {
 namespace {
@@ -62,11 +60,6 @@ std::size_t most_trials(const CalibrationDescription& calibration) {
   return static_cast<std::size_t>(calibration.optimizer.trials) + most_further_trials(calibration.parameters.size());
 }
 
-Description json_at(const std::filesystem::path& path) {
-  std::string fault;
-  return parsed_json(read_bytes(path, fault));
-}
-
 /// Throws FileError if the calibration would replace a file that none wrote, or the results of another one.
 void refuse_foreign_files_of_calibration(const CalibrationPlace& place, bool overwrite) {
   const auto results = place.out / "calibration.json", fitted = place.out / "fitted.json";
@@ -75,6 +68,7 @@ void refuse_foreign_files_of_calibration(const CalibrationPlace& place, bool ove
                     ": no calibration wrote this file: it would be lost; move it away, or choose another folder with "
                     "--out");
   };
+  refuse_results_of_others(place.out, ResultsOf::calibration);
   refuse_foreign_page(place.out / "calibration.html");
   if (std::filesystem::exists(fitted))
     if (const Description json = json_at(fitted); !json.is_object() || !json.contains("//") ||
@@ -83,9 +77,8 @@ void refuse_foreign_files_of_calibration(const CalibrationPlace& place, bool ove
       refuse(fitted);
   refuse_foreign_trials(place.out);
   if (!std::filesystem::exists(results)) return;
-  const Description json = json_at(results);
-  if (!json.is_object() || !json.contains("calibration") || !json.contains("observations")) refuse(results);
-  if (json["calibration"] != place.written.json() && !overwrite)
+  if (!is_calibration_json(results)) refuse(results);
+  if (json_at(results)["calibration"] != place.written.json() && !overwrite)
     throw FileError(place.out.string() +
                     ": holds another calibration, or an earlier version of this one; give --overwrite to remove its "
                     "trials, or choose another folder with --out");

@@ -1,6 +1,7 @@
 #include "app/run_jobs.hpp"
 
 #include "app/command.hpp"
+#include "app/runs_folder.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/text_file.hpp"
 #include "input/scene.hpp"
@@ -75,7 +76,10 @@ std::vector<RunJob> jobs_of(const Options& options) {
       throw FileError(job.folder.string() +
                       " holds the results of a run; choose another folder (--out DIR), continue it (--resume) or "
                       "replace them (--overwrite)");
-    if (job.existing != Existing::resume) refuse_foreign_files(job.folder);
+    if (job.existing != Existing::resume) {
+      refuse_results_of_others(job.folder, ResultsOf::run);
+      refuse_foreign_files(job.folder);
+    }
     jobs.push_back(std::move(job));
   }
   return jobs;

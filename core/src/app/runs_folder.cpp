@@ -8,11 +8,13 @@
 #include <set>
 
 #include "grit/error.hpp"
+#include "grit/toolkit/text_file.hpp"
 #include "output/checkpoint.hpp"
 #include "output/own_files.hpp"
 #include "output/read_results.hpp"
 #include "output/run_facts.hpp"
 #include "plugins/build_facts.hpp"
+#include "storage/parsed_json.hpp"
 #include "study/run_command.hpp"
 
 namespace grit {
@@ -37,6 +39,31 @@ bool can_resume(const std::filesystem::path& folder, const RunFacts& facts) {
 }
 
 }  // namespace
+
+Description json_at(const std::filesystem::path& path) {
+  std::string fault;
+  return parsed_json(read_bytes(path, fault));
+}
+
+bool is_study_json(const std::filesystem::path& path) {
+  const Description json = json_at(path);
+  return json.is_object() && json.contains("variants") && json.contains("cheapest");
+}
+
+bool is_calibration_json(const std::filesystem::path& path) {
+  const Description json = json_at(path);
+  return json.is_object() && json.contains("calibration") && json.contains("observations");
+}
+
+void refuse_results_of_others(const std::filesystem::path& folder, ResultsOf own) {
+  const auto refuse = [&](const char* whose) {
+    throw FileError(folder.string() + ": holds the results of a " + whose +
+                    ", with which others would be mixed; choose another folder with --out");
+  };
+  if (own != ResultsOf::run && holds_a_run(folder)) refuse("run");
+  if (own != ResultsOf::study && is_study_json(folder / "study.json")) refuse("study");
+  if (own != ResultsOf::calibration && is_calibration_json(folder / "calibration.json")) refuse("calibration");
+}
 
 bool has_series(const std::filesystem::path& folder) {
   try {

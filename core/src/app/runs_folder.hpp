@@ -39,6 +39,18 @@ std::string failed_run_text(const std::string& run, int status, const std::files
 /// Throws FileError if another process holds the lock. `command`: "grit study".
 void lock_folder(const std::filesystem::path& out, const std::string& command, std::optional<FolderLock>& lock);
 
+/// A file as JSON; a discarded value if it cannot be read.
+Description json_at(const std::filesystem::path& path);
+
+/// Whether a file is the study.json of a study, or the calibration.json of a calibration.
+bool is_study_json(const std::filesystem::path& path);
+bool is_calibration_json(const std::filesystem::path& path);
+
+enum class ResultsOf { run, study, calibration };
+
+/// Throws FileError if a folder holds the results of another command, with which those of this one would be mixed.
+void refuse_results_of_others(const std::filesystem::path& folder, ResultsOf own);
+
 /// Throws FileError if a folder holds a run that neither a study nor a calibration began, or is a symbolic link: it
 /// would be lost.
 void refuse_foreign_run(const std::filesystem::path& folder);

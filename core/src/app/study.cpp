@@ -23,10 +23,8 @@
 #include "format/number.hpp"
 #include "format/symbols.hpp"
 #include "grit/error.hpp"
-#include "grit/toolkit/text_file.hpp"
 #include "output/own_files.hpp"
 #include "storage/atomic_file.hpp"
-#include "storage/parsed_json.hpp"
 #include "study/batch.hpp"
 #include "study/study_page.hpp"
 #include "study/study_result.hpp"
@@ -62,12 +60,6 @@ class StudyProgress {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-bool is_own_json(const std::filesystem::path& path) {
-  std::string fault;
-  const Description json = parsed_json(read_bytes(path, fault));
-  return json.is_object() && json.contains("variants") && json.contains("cheapest");
-}
-
 bool is_own_table(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::string head;
@@ -87,13 +79,14 @@ std::filesystem::path log_of(const StudyRun& run) { return run.folder / "log.txt
 
 /// Throws FileError if the study would replace a file that no study wrote.
 void refuse_foreign_files_of_study(const std::filesystem::path& out, const std::vector<StudyRun>& runs) {
+  refuse_results_of_others(out, ResultsOf::study);
   const auto check = [](const std::filesystem::path& path, const auto& is_own) {
     if (std::filesystem::exists(path) && !(std::filesystem::is_regular_file(path) && is_own(path)))
       throw FileError(path.string() +
                       ": no study wrote this file: it would be lost; move it away, or choose another folder with "
                       "--out");
   };
-  check(out / "study.json", is_own_json);
+  check(out / "study.json", is_study_json);
   check(out / "study.csv", is_own_table);
   refuse_foreign_page(out / "study.html");
   for (const StudyRun& run : runs) refuse_foreign_run(run.folder), check(log_of(run), is_own_log);
