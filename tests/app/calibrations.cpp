@@ -143,6 +143,71 @@ TEST_F(Calibrations, AreInterruptedAndContinued) {
   EXPECT_THAT(text_of(folder / "results/damping/trials/0001/seed-1/run.json"), HasSubstr("interrupted"));
 }
 
+TEST_F(Calibrations, LeaveNoRunsWhenKilled) {
+  auto scene = json::parse(fall);
+  scene["stages"][0]["until"]["value"] = "100 s", scene["stages"][0]["limit"] = "200 s";
+  folder.write("fall.json", scene.dump());
+  Program running(grit_with({"calibrate", "damping.json", "--jobs", "1"}), folder.path());
+  ASSERT_TRUE(running.wait_for("results in"));
+  const auto run = folder / "results/damping/trials/0001/seed-1/run.json";
+  while (!std::filesystem::exists(run)) std::this_thread::yield();
+  running.interrupt(SIGKILL);
+  EXPECT_EQ(running.finish().status, -SIGKILL);
+  const auto status = [&] { return json::parse(text_of(run)).at("status"); };
+  while (status() == "running") std::this_thread::yield();
+  EXPECT_EQ(status(), "interrupted") << "it has saved its state";
+}
+
+TEST_F(Calibrations, RefuseParametersOnWhichNoRunDepends) {
+  const auto pointer = [&](const char* to) { return fault("/parameters/damping/pointers", {to}); };
+  EXPECT_THAT(pointer("/materials/snd/rolling_limit"),
+              HasSubstr("damping.json:1: /parameters/damping/pointers/0: /materials/snd: no body and no wall uses it; "
+                        "allowed is a value that changes the run"));
+  EXPECT_THAT(fault("/parameters/damping", {{"pointers", {"/title"}}, {"range", {"2 deg", "9 deg"}}}),
+              HasSubstr("/parameters/damping/pointers/0: /title: no run depends on it"));
+  EXPECT_THAT(pointer("/materials/sand/twisting_limit"),
+              HasSubstr("/parameters/damping/pointers/0: /materials/sand/twisting_limit: "));
+  EXPECT_THAT(fault("/parameters/damping/pointers", {"/engines/damping/coefficient", "/materials/snd/rolling_limit"}),
+              AllOf(HasSubstr("/parameters/damping/pointers/1: "), HasSubstr("grit: 1 problem")));
+  const auto dry = grit({"calibrate", "damping.json", "--dry-run"});
+  EXPECT_THAT(dry.err, Not(HasSubstr("without effect")));
+  EXPECT_EQ(dry.status, 0);
+  // Together they have an effect, though not where both are 0.
+  for (const char* name : {"stiffness", "limit"})
+    calibration["parameters"][name] = {
+        {"pointers", {std::string("/materials/sand/rolling_") + name}}, {"range", {0, 1}}, {"start", 0}};
+  calibration["set"] = {{"/materials/snd/friction_angle", "30 deg"}};
+  write();
+  const auto both = grit({"calibrate", "damping.json", "--dry-run"});
+  EXPECT_EQ(both.status, 0) << both.err;
+  EXPECT_THAT(both.err,
+              HasSubstr("grit: warning: damping.json:1: /set/~1materials~1snd~1friction_angle: without effect: "
+                        "/materials/snd: no body and no wall uses it"));
+}
+
+TEST_F(Calibrations, RefuseValuesThatMustBeWhole) {
+  calibration["parameters"]["damping"] = {
+      {"pointers", {"/bodies/grains/source/count"}}, {"range", {20, 60}}, {"start", 40}};
+  write();
+  const auto refused = grit({"calibrate", "damping.json", "--dry-run"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr("damping.json:1: /parameters/damping/pointers/0: /bodies/grains/source/count: "
+                              "found the number 44.7214; allowed is an integer. "),
+                    HasSubstr("vary the value in a study")));
+}
+
+TEST_F(Calibrations, ReadTargetsInTheUnitOfTheirChannel) {
+  calibration["targets"]["energy"].update({{"value", "0.004 mJ"}, {"tolerance", "0.1 uJ"}});
+  write();
+  EXPECT_EQ(grit({"calibrate", "damping.json", "--dry-run"}).status, 0);
+  EXPECT_THAT(
+      fault("/targets/energy/value", "3 mm"),
+      AllOf(HasSubstr("damping.json:1: /targets/energy/value: found the text \"3 mm\"; allowed is a number in J"),
+            HasSubstr("mJ")));
+  EXPECT_THAT(fault("/targets/energy/value", 1e160), HasSubstr("/targets/energy/value: found 1e+160"));
+}
+
 TEST_F(Calibrations, RefuseWhatCannotBeRun) {
   EXPECT_THAT(fault("/parameters/damping/pointers", {"/engines/dampng/coefficient"}),
               AllOf(HasSubstr("damping.json:1: /parameters/damping/pointers/0: /engines/dampng"), HasSubstr("type")));
@@ -195,6 +260,31 @@ TEST_F(Calibrations, KeepFilesThatNoneWrote) {
   const auto refused = grit({"calibrate", "damping.json", "--overwrite"});
   EXPECT_EQ(refused.status, 5);
   EXPECT_THAT(refused.err, HasSubstr("results/damping/trials/0001/seed-1: no study or calibration began this run"));
+}
+
+TEST_F(Calibrations, KeepToFoldersOfTheirOwn) {
+  const auto refused = [&](const std::vector<std::string>& words, const char* whose) {
+    const auto outcome = grit(words);
+    EXPECT_EQ(outcome.status, 5) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(std::string("holds the results of a ") + whose), HasSubstr("--out")));
+  };
+  ASSERT_EQ(grit({"run", "fall.json", "--out", "one", "--quiet"}).status, 0);
+  refused({"calibrate", "damping.json", "--out", "one"}, "run");
+  EXPECT_FALSE(std::filesystem::exists(folder / "one/trials"));
+  calibration["optimizer"]["trials"] = 1;
+  write();
+  ASSERT_EQ(grit({"calibrate", "damping.json", "--quiet"}).status, 0);
+  refused({"run", "fall.json", "--out", "results/damping"}, "calibration");
+  refused({"run", "fall.json", "--out", "results/damping", "--overwrite"}, "calibration");
+  EXPECT_FALSE(std::filesystem::exists(folder / "results/damping/run.json"));
+  folder.write("study.json", R"({"scene": "fall.json", "purpose": "sweep", "seeds": {"values": [1]},
+    "settings": {"damping": {"pointers": ["/engines/damping/coefficient"], "values": [0.1, 0.2]}},
+    "metrics": {"energy": {"type": "last", "of": "packing/kinetic_energy"}}})");
+  ASSERT_EQ(grit({"study", "study.json", "--quiet"}).status, 0);
+  refused({"calibrate", "damping.json", "--out", "results/study"}, "study");
+  refused({"run", "fall.json", "--out", "results/study"}, "study");
+  refused({"study", "study.json", "--out", "results/damping"}, "calibration");
+  refused({"study", "study.json", "--out", "one"}, "run");
 }
 
 }  // namespace

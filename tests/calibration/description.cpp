@@ -69,6 +69,9 @@ TEST_F(CalibrationDescriptions, ReportWhatIsWrong) {
   EXPECT_THAT(fault("/parameters/friction/range", {"5 deg", "1 rad"}), HasSubstr("the unit of the first, \"deg\""));
   EXPECT_THAT(fault("/parameters/friction/range", 5), HasSubstr("a list of two values"));
   EXPECT_THAT(fault("/parameters/friction/range", {"low", "5 deg"}), HasSubstr("/range/0: found the text \"low\""));
+  EXPECT_THAT(fault("/parameters/modulus/range", {1, 1e300}),
+              HasSubstr("/parameters/modulus/range/1: found the number 1e+300; allowed is a number of at most 1e+50"));
+  EXPECT_THAT(fault("/parameters/friction/range", {"9 deg", "9.000001 deg"}), HasSubstr("wider than the six digits"));
   EXPECT_THAT(fault("/parameters/friction/start", "50 deg"),
               HasSubstr("/start: found the text \"50 deg\"; allowed is a value from \"5 deg\" to \"40 deg\""));
   EXPECT_THAT(fault("/parameters/friction/start", 9), HasSubstr("in the same unit"));
@@ -81,6 +84,12 @@ TEST_F(CalibrationDescriptions, ReportWhatIsWrong) {
   EXPECT_THAT(fault("/targets/peak/of", "q"), HasSubstr("probe/channel"));
   EXPECT_THAT(fault("/optimizer/algorithm", "newton"), HasSubstr("bobyqa"));
   EXPECT_THAT(fault("/set", {{"/d", json::object()}}), HasSubstr("/set/~1d: found an object"));
+  EXPECT_THAT(
+      fault("/set", {{"/c", 1e7}}),
+      HasSubstr("/set/~1c: found a value that /parameters/modulus/pointers/0 changes; allowed is a value that no "
+                "parameter and no seed changes"));
+  EXPECT_THAT(fault("/set", {{"/seed", 4}}), HasSubstr("/set/~1seed: found a value that /samples/pointer changes"));
+  EXPECT_THAT(fault("/set", {{"/d", 4}}), HasSubstr("none"));
   EXPECT_THAT(fault("/sample", 3), HasSubstr("samples"));
 }
 

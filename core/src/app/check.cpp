@@ -28,15 +28,11 @@
 #include "lint/installed_studies.hpp"
 #include "lint/missed_floor.hpp"
 #include "lint/odd_densities.hpp"
-#include "lint/repeated_geometry.hpp"
 #include "lint/short_reach.hpp"
 #include "lint/soft_contacts.hpp"
 #include "lint/turned_walls.hpp"
 #include "lint/unmoved_bodies.hpp"
-#include "lint/unused_materials.hpp"
-#include "lint/unused_motions.hpp"
-#include "lint/unused_scenario_parameters.hpp"
-#include "lint/unused_settings.hpp"
+#include "lint/without_effect.hpp"
 #include "output/frame_size.hpp"
 #include "output/frame_space.hpp"
 #include "output/named_fields.hpp"
@@ -231,31 +227,14 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   std::ranges::move(odd_densities(description), std::back_inserter(warnings));
   std::ranges::move(turned_walls(scene, kernel.world()), std::back_inserter(warnings));
   for (const auto& [pointer, why] : warnings) std::cout << "\nwarning\n  " << pointer << ": " << why << '\n';
-  auto idle = unused_settings(scene, components, kernel);
-  std::ranges::move(unused_motions(scene), std::back_inserter(idle));
-  const auto sets = options.list("set");
-  const Description now = resolved(description);
-  const auto same = [&](const std::vector<std::string>& more) {
-    auto all = sets;
-    all.insert(all.end(), more.begin(), more.end());
-    return resolved(*load_scene(file, all, registry).description) == now;
-  };
-  Document written = Document::load(file);
-  for (const std::string& set : sets) written.set(set);
-  const auto is_written = [&](const std::string& pointer) {
-    return written.json().contains(Description::json_pointer(pointer));
-  };
-  for (UnusedSetting& one : unused_materials(scene, is_written)) {
-    // Skips values that are listed already, or belong to something that is.
-    if (std::ranges::none_of(idle, [&](const UnusedSetting& known) {
-          return known.pointer == one.pointer || one.pointer.starts_with(known.pointer + '/');
-        }))
-      idle.push_back(std::move(one));
-  }
-  std::ranges::move(repeated_geometry(scene, is_written), std::back_inserter(idle));
-  std::ranges::move(unused_scenario_parameters(written, same), std::back_inserter(idle));
+  const SceneSource source{file, options.list("set"), registry};
+  auto idle = without_effect(scene, components, kernel, source);
   const auto [studies, unreadable] = installed_studies();
   for (const std::string& why : unreadable) std::cerr << "grit: omitted: " << why << std::endl;
+  const Description now = resolved(description);
+  const auto same = [&](const std::vector<std::string>& more) {
+    return resolved(*source.with(more).description) == now;
+  };
   if (auto depth = excess_depth(scene, components, kernel.world(), scenario_type(Document::load(file)), studies, same))
     idle.push_back(std::move(*depth));
   if (!idle.empty()) std::cout << "\nwithout effect\n";

@@ -3,7 +3,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <iostream>
 #include <string>
 #include <utility>
 
@@ -11,15 +13,25 @@
 #include "app/run_setup.hpp"
 #include "app/runs_folder.hpp"
 #include "calibration/observations.hpp"
+#include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
+#include "kernel/kernel.hpp"
+#include "lint/without_effect.hpp"
 #include "output/plugins_used.hpp"
 #include "simulation/live_scene.hpp"
+#include "simulation/prepared_sample.hpp"
 #include "study/batch.hpp"
 #include "study/study_result.hpp"
 
 namespace grit {
 namespace {
+
+/// Places at which each parameter is checked before the first run: both ends, and values with digits between.
+constexpr std::array tried_places{0.0, 1.0, 0.618034, 0.0618034};
+constexpr const char* within_range =
+    ". A calibration tries all values of the range; choose one within which all are allowed, or vary the value in a "
+    "study";
 
 std::filesystem::path folder_of(const std::filesystem::path& out, std::size_t number) {
   return out / "trials" / fmt::format("{:04}", number + 1);
@@ -36,12 +48,16 @@ bool overlap(const std::string& one, const std::string& other) {
   return (one + '/').starts_with(other + '/') || (other + '/').starts_with(one + '/');
 }
 
+/// Where a calibration names a pointer of a parameter.
+std::string place_of_pointer(const std::string& parameter, std::size_t index) {
+  return fmt::format("/parameters/{}/pointers/{}", pointer_token(parameter), index);
+}
+
 /// Where a calibration names the value at a pointer; empty if it does not.
 std::string place_of(const CalibrationDescription& calibration, const std::string& pointer) {
   for (const auto& [name, parameter] : calibration.parameters)
     for (std::size_t i = 0; i < parameter.pointers.size(); ++i)
-      if (overlap(pointer, parameter.pointers[i]))
-        return fmt::format("/parameters/{}/pointers/{}", pointer_token(name), i);
+      if (overlap(pointer, parameter.pointers[i])) return place_of_pointer(name, i);
   if (pointer == calibration.samples.pointer) return "/samples/pointer";
   for (const auto& [own, value] : calibration.set.items())
     if (overlap(pointer, own)) return "/set/" + pointer_token(own);
@@ -82,16 +98,20 @@ CheckedTrials TrialRuns::check() const {
   Scene usual = scene(first);
   std::size_t k = 0;
   for (const auto& [name, parameter] : calibration.parameters) {
-    for (const double end : {parameter.low(), parameter.high()}) {
+    for (const double at : tried_places) {
       auto values = first;
-      values[k] = end;
+      values[k] = parameter.value(at);
       try {
         scene(values);
       } catch (const DescriptionError& error) {
         // A scenario may refuse a combination of values that the search never meets.
-        if (std::ranges::any_of(error.problems(),
-                                [&](const Problem& one) { return place_.written.sources().contains(one.file); }))
-          throw;
+        if (std::ranges::none_of(error.problems(),
+                                 [&](const Problem& one) { return place_.written.sources().contains(one.file); }))
+          continue;
+        if (at == 0 || at == 1) throw;
+        auto problems = error.problems();
+        for (Problem& one : problems) one.message += within_range;
+        throw DescriptionError(std::move(problems));
       }
     }
     ++k;
@@ -102,7 +122,63 @@ CheckedTrials TrialRuns::check() const {
   const LiveScene live(usual);
   std::map<std::string, std::string> units;
   at_its_place(usual.document, [&] { units = check_channels(targets, live, registry_); });
+  refuse_ignored(first);
   return {std::move(usual), observations_of(calibration, place_.written, units)};
+}
+
+std::map<std::string, std::string> TrialRuns::ignored(const std::vector<double>& values) const try {
+  const CalibrationDescription& calibration = place_.calibration;
+  const SceneSource source{calibration.base, sets(values, 1), registry_};
+  const Scene own = scene(values);
+  const LiveScene live(own);
+  const Components& components = live.components();
+  const Kernel kernel(*own.description, components, prepare(live, registry_, run_state(*own.description, components)),
+                      1);
+  const auto idle = without_effect(own, components, kernel, source);
+  std::map<std::string, std::string> all;
+  const auto add = [&](const std::string& pointer, const std::string& at) {
+    for (const UnusedSetting& one : idle)
+      if ((pointer + '/').starts_with(one.pointer + '/')) all[at] = fmt::format("{}: {}", one.pointer, one.why);
+  };
+  const auto run_with = [&](const std::string& pointer, const Description& value) {
+    Description seen = resolved(*source.with({pointer + '=' + value.dump()}).description);
+    for (const char* shown_only : {"title", "output"}) seen.erase(shown_only);
+    return seen;
+  };
+  for (const auto& [name, parameter] : calibration.parameters)
+    for (std::size_t i = 0; i < parameter.pointers.size(); ++i) {
+      const std::string &pointer = parameter.pointers[i], at = place_of_pointer(name, i);
+      if (run_with(pointer, parameter.written(parameter.low())) ==
+          run_with(pointer, parameter.written(parameter.high())))
+        all[at] = pointer + ": no run depends on it";
+      add(pointer, at);
+    }
+  for (const auto& [pointer, value] : calibration.set.items()) add(pointer, "/set/" + pointer_token(pointer));
+  return all;
+} catch (const PlacedError&) {
+  return {};  // the scene cannot begin with these values, of which a trial says more
+} catch (const NumericsError&) {
+  return {};
+} catch (const DescriptionError&) {
+  return {};
+}
+
+void TrialRuns::refuse_ignored(const std::vector<double>& first) const {
+  std::vector<double> middle;
+  for (const auto& [name, parameter] : place_.calibration.parameters) middle.push_back(parameter.value(0.5));
+  std::vector<Problem> problems;
+  if (const auto once = ignored(first); !once.empty())
+    // A parameter may have no effect while another one is 0.
+    for (const auto& [at, why] : ignored(middle)) {
+      if (!once.contains(at)) continue;
+      const bool is_set = at.starts_with("/set/");
+      Problem problem = place_.written.problem(at, why);
+      if (is_set)
+        std::cerr << fmt::format("grit: warning: {}:{}: {}: without effect: {}", problem.file, problem.line, at, why)
+                  << std::endl;
+      else problems.push_back(place_.written.problem(at, why + "; allowed is a value that changes the run"));
+    }
+  if (!problems.empty()) throw DescriptionError(std::move(problems));
 }
 
 std::vector<TrialSample> TrialRuns::operator()(std::size_t number, const std::vector<double>& values) const {

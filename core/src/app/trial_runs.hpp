@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "app/options.hpp"
@@ -49,6 +51,10 @@ class TrialRuns {
   std::vector<std::string> sets(const std::vector<double>& values, double seed) const;
   /// A fault of a value that the calibration sets is reported where the calibration names it.
   Scene scene(const std::vector<double>& values) const;
+  /// Where the calibration names values on which no run depends, and why, with these values of the parameters.
+  std::map<std::string, std::string> ignored(const std::vector<double>& values) const;
+  /// Throws DescriptionError if a parameter is one of them; warns of others.
+  void refuse_ignored(const std::vector<double>& first) const;
   std::vector<TrialSample> results(const std::filesystem::path& folder) const;
 
   const CalibrationPlace& place_;

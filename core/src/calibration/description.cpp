@@ -29,15 +29,18 @@ void check_range(const ParameterDescription& parameter, const Complain& complain
   }
   const auto low = quantity_of(range[0]), high = quantity_of(range[1]);
   for (std::size_t i = 0; i < 2; ++i)
-    if (!(i == 0 ? low : high))
-      complain(fmt::format("range/{}", i), describe_value(range[i]), "a number, or a text with number and unit");
-  if (!low || !high) return;
+    if (const auto& end = i == 0 ? low : high; !end || !(std::abs(end->number) <= most_magnitude))
+      complain(fmt::format("range/{}", i), describe_value(range[i]),
+               fmt::format("a number of at most {:g}, or a text with such a number and a unit", most_magnitude));
+  if (!low || !high || std::max(std::abs(low->number), std::abs(high->number)) > most_magnitude) return;
   if (low->unit != high->unit)
     complain("range/1", describe_value(range[1]), "a value in the unit of the first, \"" + low->unit + '"');
   else if (!(low->number < high->number))
     complain("range", range.dump() + ", which is empty", "two values of which the second is larger");
   else if (parameter.is_logarithmic() && !(low->number > 0))
     complain("range/0", describe_value(range[0]), "a value above 0 with the scale \"log\"");
+  else if (parameter.value(0.4) == parameter.value(0.6))
+    complain("range", range.dump(), "a range wider than the six digits to which values are rounded");
   else if (!parameter.start.is_null()) {
     const auto start = quantity_of(parameter.start);
     if (!start || start->unit != low->unit || start->number < low->number || start->number > high->number)
@@ -53,6 +56,11 @@ void check_pointers(const CalibrationDescription& calibration, const Complain& c
       changed.push_back({parameter.pointers[i], fmt::format("parameters/{}/pointers/{}", name, i)});
   changed.push_back({calibration.samples.pointer, "samples/pointer"});
   refuse_changed_twice(changed, "a value that no other parameter and no seed changes", complain);
+  for (const auto& [pointer, value] : calibration.set.items())
+    for (const ChangedPointer& one : changed)
+      if ((pointer + '/').starts_with(one.pointer + '/'))
+        complain("set/" + pointer_token(pointer), fmt::format("a value that /{} changes", one.where),
+                 "a value that no parameter and no seed changes");
 }
 
 }  // namespace
@@ -162,7 +170,7 @@ void CalibrationDescription::declare(Parameters& p) {
         if (targets.empty()) complain("targets", "none", "at least one");
       },
       {"set", "parameters", "targets"});
-  p.check([this](const Complain& complain) { check_pointers(*this, complain); }, {"parameters", "samples"});
+  p.check([this](const Complain& complain) { check_pointers(*this, complain); }, {"set", "parameters", "samples"});
 }
 
 std::map<std::string, MetricDescription> CalibrationDescription::metrics() const {

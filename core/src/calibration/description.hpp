@@ -14,6 +14,11 @@
 
 namespace grit {
 
+/// Of parameters, targets, tolerances and what runs find: squares of their ratios stay far within the range of numbers.
+inline constexpr double most_magnitude = 1e50, least_tolerance = 1e-50;
+/// A tolerance below this part of its target is lost in the digits of numbers.
+inline constexpr double least_relative_tolerance = 1e-12;
+
 /// A parameter between two values. The search sees it as a place from 0 to 1 in its range.
 struct ParameterDescription {
   std::string doc;

@@ -32,9 +32,9 @@ std::optional<double> number_of(const Description& value, const std::string& uni
       value.is_string() && !unit.empty() ? parse_quantity(value.get<std::string>(), unit) : std::nullopt;
   if (quantity) return quantity->value;
   report(key, describe_value(value),
-         unit.empty() ? std::string("a number in the unit of the channel")
-                      : fmt::format("a number in {}, or a text with a number and one of {}",
-                                    unit == "1" ? "the unit 1" : unit, unit_list(unit)));
+         unit.empty()  ? std::string("a number in the unit of the channel")
+         : unit == "1" ? std::string("a number, or a text such as \"5 %\": the channel has no unit")
+                       : fmt::format("a number in {}, or a text with a number and one of {}", unit, unit_list(unit)));
   return std::nullopt;
 }
 

@@ -14,11 +14,6 @@
 
 namespace grit {
 
-/// Of targets, tolerances and what runs find: squares of their ratios stay far within the range of numbers.
-inline constexpr double most_magnitude = 1e50, least_tolerance = 1e-50;
-/// A tolerance below this part of its target is lost in the digits of numbers.
-inline constexpr double least_relative_tolerance = 1e-12;
-
 /// A number that a run is to meet: a target, or a point of a target that is a curve.
 struct Observation {
   std::size_t target = 0;                                ///< index in the order of names
