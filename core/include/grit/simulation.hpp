@@ -55,6 +55,10 @@ struct Forecast {
 };
 
 /// A simulation at one instant. Not thread-safe: all calls must come from one thread.
+///
+/// An error that ends a step midway, as a guard does, or a stage that does not end, leaves a failed simulation: bodies
+/// may have moved while the time has not. world() shows them, and run(), run_stage(), step(), set() and save() throw
+/// the same error again. After a time step that is too large nothing has moved: set another one, and go on.
 class Simulation {
  public:
   /// Reads a description and those that it extends, and creates its bodies, walls and components. Throws
@@ -76,11 +80,13 @@ class Simulation {
   Forecast check();
 
   /// Runs the present stage to its end, then begins the next one, if any. Returns false if it was interrupted between
-  /// two steps. Throws NumericsError if a guard trips or the stage does not end within its limit.
+  /// two steps, true if the simulation is done. Throws NumericsError if a guard trips or the stage does not end within
+  /// its limit.
   bool run_stage();
   /// Runs all remaining stages. Returns false if it was interrupted.
   bool run();
-  /// Takes `steps` time steps, through the ends of stages; fewer if the last stage ends. Returns the number taken.
+  /// Takes `steps` time steps, through the ends of stages; fewer if the last stage ends. Returns the number taken: 0 if
+  /// the simulation is done.
   std::uint64_t step(std::uint64_t steps = 1);
   /// Whether all stages have ended.
   bool done() const;
@@ -96,7 +102,8 @@ class Simulation {
 
   /// Sets a value (SI) of the description from now on, as `change` of a stage does: of a material, interface, wall or
   /// engine, rates or servo of /domain, /time_step or /guards. Setting a number again is cheap enough for every step.
-  /// Throws DescriptionError for another pointer or a value out of range.
+  /// Throws DescriptionError for another pointer, a value out of range, and one without effect from now on; nothing has
+  /// changed then. Throws Error if the simulation is done.
   void set(const std::string& pointer, const Description& value);
 
   using Observer = std::function<void(const World&)>;
@@ -113,10 +120,11 @@ class Simulation {
   /// Evaluates a condition between steps; the run is interrupted when it is true.
   void interrupt_when(std::function<bool()> condition);
 
-  /// The complete state, from which a run continues with identical results.
+  /// The complete state, from which a run continues with identical results; also of a simulation that is done.
   Checkpoint save();
-  /// Continues from the saved state of a simulation of the same description. Forces are known after the next step.
-  /// Throws Error for another description, and for a simulation that has started.
+  /// Continues from the saved state of a simulation of the same description, which is not checked. Forces are known
+  /// after the next step, or after step(0). Throws Error for a state that does not fit the description, and for a
+  /// simulation that has started.
   void resume(const Checkpoint& checkpoint);
 
   /// For the library itself: how it is put together.

@@ -95,10 +95,8 @@ void Options::warn_of_threads() const {
 std::unique_ptr<Registry> Options::registry() const {
   const auto folders = list("plugin-path");
   for (const std::string& folder : folders) {
-    std::error_code none;
-    if (!std::filesystem::is_directory(folder, none))
-      throw UsageError("--plugin-path takes a folder of plugins, not \"" + folder + "\", which " +
-                       (std::filesystem::exists(folder, none) ? "is a file" : "does not exist"));
+    if (const std::string fault = fault_of_plugin_directory(folder); !fault.empty())
+      throw UsageError("--plugin-path takes a folder of plugins, not \"" + folder + "\", " + fault);
   }
   return standard_registry(folders);
 }

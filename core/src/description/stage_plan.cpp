@@ -62,6 +62,18 @@ void SettingsChange::apply_to(SceneDescription& scene) const {
   if (guards) scene.guards = *guards;
 }
 
+SettingsChange SettingsChange::reverse(const SceneDescription& scene) const {
+  SettingsChange before;
+  for (const auto& [name, value] : materials) before.add(scene, "materials", name);
+  for (const auto& [name, value] : interfaces) before.add(scene, "interfaces", name);
+  for (const auto& [name, value] : walls) before.add(scene, "walls", name);
+  for (const auto& [name, value] : engines) before.add(scene, "engines", name);
+  if (domain) before.domain = scene.domain;
+  if (time_step) before.time_step = scene.time_step;
+  if (guards) before.guards = scene.guards;
+  return before;
+}
+
 void SettingsChange::add(const SceneDescription& scene, const std::string& section, const std::string& name) {
   if (section == "materials") add_one(scene.materials, name, materials);
   if (section == "interfaces") {

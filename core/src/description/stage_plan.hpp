@@ -32,6 +32,8 @@ struct SettingsChange {
   std::optional<GuardsDescription> guards;
 
   void apply_to(SceneDescription& scene) const;
+  /// The change that undoes this one in a scene to which it is not yet applied.
+  SettingsChange reverse(const SceneDescription& scene) const;
   /// Adds the present values of a part of a scene; for an entry that does not exist, its removal.
   void add(const SceneDescription& scene, const std::string& section, const std::string& name);
 };

@@ -106,6 +106,12 @@ std::string pointer_token(const std::string& key) {
   return token;
 }
 
+std::string pointer_of(const std::vector<std::string>& keys) {
+  std::string pointer;
+  for (const std::string& key : keys) pointer += '/' + pointer_token(key);
+  return pointer;
+}
+
 std::string describe_value(const Description& value) {
   switch (value.type()) {
     case Description::value_t::object:
@@ -333,11 +339,11 @@ Problem Document::problem(const std::string& pointer, std::string message) const
   return {written.source->name, written.line, visible_text(written.pointer), visible_text(message)};
 }
 
-void Document::set(const std::string& assignment) {
-  static const auto source = std::make_shared<const Source>(Source{"--set", {}});
+void Document::set(const std::string& assignment, const std::string& by) {
+  const auto source = std::make_shared<const Source>(Source{by, {}});
   const auto equals = assignment.find('=');
   const std::string pointer = assignment.substr(0, equals);
-  const auto refuse = [&](const std::string& message) { throw DescriptionError({{"--set", 0, pointer, message}}); };
+  const auto refuse = [&](const std::string& message) { throw DescriptionError({{by, 0, pointer, message}}); };
   if (equals == std::string::npos || pointer.empty())
     refuse("found \"" + assignment + "\"; allowed is /pointer=value, e.g. /stages/0/limit=0.1");
   const std::string text = assignment.substr(equals + 1);

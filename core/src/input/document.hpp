@@ -54,8 +54,8 @@ class Document {
   Problem problem(const std::string& pointer, std::string message) const;
 
   /// Applies "/pointer=value": the value is read as JSON, otherwise as a text. Missing parents are created as objects;
-  /// null removes. Throws DescriptionError.
-  void set(const std::string& assignment);
+  /// null removes. `by`: the source in messages. Throws DescriptionError.
+  void set(const std::string& assignment, const std::string& by = "--set");
   /// Sets the value at a pointer as if it had been written at `origin`. Missing parents are created as objects. Returns
   /// the problem with the pointer; empty if there is none.
   std::string set(const std::string& pointer, Description value, const Origin& origin);
@@ -85,6 +85,8 @@ class Document {
 
 /// A key as a part of a JSON pointer (RFC 6901).
 std::string pointer_token(const std::string& key);
+/// The JSON pointer of these keys from the root.
+std::string pointer_of(const std::vector<std::string>& keys);
 
 /// A JSON value in messages: `the text "abc"`, `the number 5`, "a list".
 std::string describe_value(const Description& value);

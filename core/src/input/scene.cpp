@@ -314,18 +314,19 @@ std::string scenario_type(const Document& document) {
 }
 
 Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets,
-                       const Registry& registry) {
+                       const Registry& registry, const std::string& sets_by) {
   Document document = Document::load(path);
   if (document.json().contains("scene") &&
       (document.json().contains("settings") || document.json().contains("metrics")))
     throw DescriptionError(
         {document.problem("/scene", "found a study; allowed is a description. 'grit study " + path.string() +
                                         "' runs a study; with --dry-run it lists the runs")});
-  return expanded_document(std::move(document), sets, registry);
+  return expanded_document(std::move(document), sets, registry, sets_by);
 }
 
-Document expanded_document(Document document, const std::vector<std::string>& sets, const Registry& registry) {
-  for (const auto& assignment : sets) document.set(assignment);
+Document expanded_document(Document document, const std::vector<std::string>& sets, const Registry& registry,
+                           const std::string& sets_by) {
+  for (const auto& assignment : sets) document.set(assignment, sets_by);
   return document.json().contains("scenario") ? expanded(document, registry) : document;
 }
 
@@ -358,6 +359,10 @@ SettingsChange change_of(const SceneDescription& now, const std::string& pointer
   Description patch = Description::object();
   try {
     const Description::json_pointer at(pointer);
+    if (value.is_object() && value.empty() && all.contains(at))
+      throw DescriptionError({{"set", 0, pointer,
+                               "found an empty object, which changes nothing; allowed is one with the values to "
+                               "change, or null for the default"}});
     patch[at] = value;
     if (const auto list = list_around(all, at)) {
       Description changed = all;

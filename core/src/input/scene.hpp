@@ -24,13 +24,14 @@ struct Scene {
 std::string scenario_type(const Document& document);
 
 /// Reads a description with the files it extends, applies `sets` ("/pointer=value") in order, and expands its scenario
-/// if it has one; its other keys are merged onto the expansion. The result is plain and not yet checked. Throws
-/// FileError, DescriptionError, PluginError.
+/// if it has one; its other keys are merged onto the expansion. The result is plain and not yet checked. `sets_by`: the
+/// source of `sets` in messages. Throws FileError, DescriptionError, PluginError.
 Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets,
-                       const Registry& registry);
+                       const Registry& registry, const std::string& sets_by = "--set");
 
 /// The same for a document already read.
-Document expanded_document(Document document, const std::vector<std::string>& sets, const Registry& registry);
+Document expanded_document(Document document, const std::vector<std::string>& sets, const Registry& registry,
+                           const std::string& sets_by = "--set");
 
 /// load_document(), then reads the description and the changes of its stages. Throws DescriptionError with every
 /// problem of the description and of its stages' changes and ramps. The result keeps a pointer to the registry. Faults

@@ -87,6 +87,11 @@ class Udunits {
     return found->second;
   }
 
+  bool knows(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    return parse(text) != nullptr;
+  }
+
  private:
   using System = std::unique_ptr<ut_system, decltype(&ut_free_system)>;
   using Unit = std::unique_ptr<ut_unit, decltype(&ut_free)>;
@@ -164,6 +169,8 @@ std::vector<std::string> unit_spellings(const std::string& unit) {
   all.insert(all.end(), row->second.also.begin(), row->second.also.end());
   return all;
 }
+
+bool is_unit(const std::string& text) { return !text.empty() && Udunits::only().knows(text); }
 
 std::string unit_list(const std::string& unit) {
   std::string text;

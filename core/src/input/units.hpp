@@ -18,6 +18,9 @@ std::string unit_list(const std::string& unit);
 /// The regular expression (ECMAScript, anchored) of all texts that are quantities of `unit`.
 std::string quantity_pattern(const std::string& unit);
 
+/// Whether UDUNITS-2 knows a unit, of the table or not; true for "1", false for "".
+bool is_unit(const std::string& text);
+
 /// A quantity as written.
 struct Quantity {
   double value;          ///< SI; infinite if the number is too large

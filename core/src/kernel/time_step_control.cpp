@@ -66,7 +66,6 @@ CriticalStep::Instant TimeStepControl::near_contacts(const State& state) const {
 }
 
 void TimeStepControl::set(State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
-  requested_ = false;
   engines_ = demand_of_engines(state, world);
   stiffening_.expect(state, bounds);
   // Without bodies the step is that of the groups that will appear.
@@ -75,7 +74,9 @@ void TimeStepControl::set(State& state, const World& world, DisplacementBounds& 
   const double stable = stable_step(contacts, state);
   bounds.foresee(state, std::isfinite(stable) ? stable : state.time.dt, passes);
   choose(contacts, state, bounds);
+  requested_ = true;
   if (state.settings.time_step.value) bounds.check_foreseen(state, state.time.dt, passes);
+  requested_ = false;
 }
 
 void TimeStepControl::follow(State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
@@ -113,6 +114,7 @@ double TimeStepControl::stable_step(const Demand& contacts, const State& state) 
 }
 
 void TimeStepControl::choose(const Demand& contacts, State& state, const DisplacementBounds& bounds) {
+  requested_ = true;  // again, if this one is refused
   const TimeStepDescription& wish = state.settings.time_step;
   double& dt = state.time.dt;
   contacts_ = contacts, walls_ = state.walls.demand();
@@ -126,10 +128,14 @@ void TimeStepControl::choose(const Demand& contacts, State& state, const Displac
            "remove /time_step/value, or set /time_step/allow_unstable to true");
     check_advance(state);
     state.walls.check_oscillations(dt);
+    requested_ = false;
     return;
   }
   double safe = stable_step(contacts, state);
-  if (!std::isfinite(safe) && dt > 0) return;  // all bodies have left
+  if (!std::isfinite(safe) && dt > 0) {  // all bodies have left
+    requested_ = false;
+    return;
+  }
   if (!std::isfinite(safe))
     throw Error(state.bodies.count() == 0
                     ? "without any group of bodies the time step is undefined; set /time_step/value"
@@ -139,6 +145,7 @@ void TimeStepControl::choose(const Demand& contacts, State& state, const Displac
   if (dt == 0 || safe < dt || safe > raise_when * dt) dt = safe;
   check_advance(state);
   state.walls.check_oscillations(dt);
+  requested_ = false;
 }
 
 }  // namespace grit

@@ -15,8 +15,11 @@
 namespace grit {
 namespace {
 
-constexpr const char* advice =
-    "resume with the original program, plugins and description, or start again (--overwrite)";
+const char* advice(ResumedBy by) {
+  return by == ResumedBy::command_line
+             ? "\n  resume with the original program, plugins and description, or start again (--overwrite)"
+             : "\n  resume with the original grit, plugins and description, or run from the start";
+}
 
 /// The build of a plugin, without the path of its file.
 Description build_of(const PluginUsed& used) {
@@ -31,12 +34,6 @@ std::string text_of(const Description& facts) {
 
 /// JSON has neither infinite numbers nor texts that are not UTF-8.
 Description as_written(const Description& facts) { return Description::parse(text_of(facts)); }
-
-Description facts_of(const RunFacts& facts) {
-  Description all{{"grit", grit_facts()}, {"plugins", Description::object()}, {"description", facts.description}};
-  for (const auto& used : facts.plugins) all["plugins"][used.kind + " " + used.name] = build_of(used);
-  return as_written(all);
-}
 
 /// Names of the stages of a description, or of any list of named objects; nothing for another value.
 std::optional<std::vector<std::string>> names_of(const Description& list) {
@@ -129,6 +126,12 @@ std::string lines(const Description& now, const Description& then) { return Diff
 
 }  // namespace
 
+Description checkpoint_facts(const RunFacts& facts) {
+  Description all{{"grit", grit_facts()}, {"plugins", Description::object()}, {"description", facts.description}};
+  for (const auto& used : facts.plugins) all["plugins"][used.kind + " " + used.name] = build_of(used);
+  return as_written(all);
+}
+
 std::string differences(const Description& now, const Description& then) {
   const auto without = [](Description description) {
     if (const auto output = description.find("output"); output != description.end() && output->is_object())
@@ -188,14 +191,16 @@ bool can_go_on_with(const Description& description, const std::string& guard, do
   return differences_on_the_way(other, description).empty();
 }
 
-std::string advice_on_stages(const Description& now, const Description& then) {
+std::string advice_on_stages(const Description& now, const Description& then, ResumedBy by) {
   const auto names = [](const Description& description) {
     const auto stages = description.find("stages");
     return stages == description.end() ? std::nullopt : names_of(*stages);
   };
   if (names(now) == names(then)) return "";
-  return "\n  --resume continues with the same stages; it cannot go on with other stages yet: run all of them from the "
-         "start in another folder (--out DIR)";
+  const bool by_options = by == ResumedBy::command_line;
+  return fmt::format(
+      "\n  {} continues with the same stages; it cannot go on with other stages yet: run all of them from the start{}",
+      by_options ? "--resume" : "resume()", by_options ? " in another folder (--out DIR)" : "");
 }
 
 bool has_checkpoint(const std::filesystem::path& folder) {
@@ -206,7 +211,18 @@ bool has_checkpoint(const std::filesystem::path& folder) {
 
 void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint,
                       const std::filesystem::path& previous) {
-  write_state(path, {facts_of(facts), checkpoint}, previous);
+  write_state(path, {checkpoint_facts(facts), checkpoint}, previous);
+}
+
+void check_facts(const std::string& checkpoint, const Description& then, const Description& now, ResumedBy by) {
+  if (const auto other = lines(now.at("grit"), then.at("grit")); !other.empty())
+    throw FileError(checkpoint + ": was written by another grit, so that results would not be bitwise identical:" +
+                    other + advice(by));
+  if (const auto other = differences_on_the_way(now.at("description"), then.at("description")); !other.empty())
+    throw Error(checkpoint + ": is of another description:" + other +
+                advice_on_stages(now.at("description"), then.at("description"), by) + advice(by));
+  if (const auto other = lines(now.at("plugins"), then.at("plugins")); !other.empty())
+    throw PluginError(checkpoint + ": was written with other builds of plugins:" + other + advice(by));
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& facts) {
@@ -217,16 +233,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& fa
     throw DamagedCheckpoint(error.what(),
                             "\n  it is not a complete checkpoint of this grit; start again (--overwrite)");
   }
-  const Description& then = file.facts;
-  const Description now = facts_of(facts);
-  if (const auto other = lines(now.at("grit"), then.at("grit")); !other.empty())
-    throw FileError(path.string() + ": was written by another grit, so that results would not be bitwise identical:" +
-                    other + "\n  " + advice);
-  if (const auto other = differences_on_the_way(now.at("description"), then.at("description")); !other.empty())
-    throw Error(path.string() + ": is of another description:" + other +
-                advice_on_stages(now.at("description"), then.at("description")) + "\n  " + advice);
-  if (const auto other = lines(now.at("plugins"), then.at("plugins")); !other.empty())
-    throw PluginError(path.string() + ": was written with other builds of plugins:" + other + "\n  " + advice);
+  check_facts(path.string(), file.facts, checkpoint_facts(facts), ResumedBy::command_line);
   return std::move(file.checkpoint);
 }
 

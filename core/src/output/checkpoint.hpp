@@ -35,8 +35,17 @@ class DamagedCheckpoint : public FileError {
 void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint,
                       const std::filesystem::path& previous = {});
 
-/// Throws DamagedCheckpoint; FileError for one of another build of grit; PluginError for other builds of plugins; Error
-/// if the description cannot be resumed from it.
+/// Who reads a checkpoint, and so what is advised if it does not fit.
+enum class ResumedBy { command_line, python };
+
+/// What a checkpoint is compared by, as its file has it: grit, plugins and description.
+Description checkpoint_facts(const RunFacts& facts);
+/// Whether a run with the facts `now` can go on from a checkpoint with those of `then`; `checkpoint`: its name. Throws
+/// FileError for one of another build of grit; PluginError for other builds of plugins; Error if the description cannot
+/// be resumed from it.
+void check_facts(const std::string& checkpoint, const Description& then, const Description& now, ResumedBy by);
+
+/// Throws DamagedCheckpoint, and as check_facts() does.
 Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& facts);
 
 struct LastCheckpoint {
@@ -54,10 +63,10 @@ std::string differences(const Description& now, const Description& then);
 /// The same, but empty if a run of one can resume from a checkpoint of the other: /guards may differ too, as they only
 /// decide where a run stops, unless a travel guard above its default sets the time step.
 std::string differences_on_the_way(const Description& now, const Description& then);
-/// Whether a run goes on with another limit of a guard, "overlap", "travel" or "energy", as differences_on_the_way() has it. Not
-/// if a stage sets that guard.
+/// Whether a run goes on with another limit of a guard, "overlap", "travel" or "energy", as differences_on_the_way()
+/// has it. Not if a stage sets that guard.
 bool can_go_on_with(const Description& description, const std::string& guard, double limit);
 /// What to do if stages were added, removed or moved: a line to append to differences(); empty if they were not.
-std::string advice_on_stages(const Description& now, const Description& then);
+std::string advice_on_stages(const Description& now, const Description& then, ResumedBy by = ResumedBy::command_line);
 
 }  // namespace grit

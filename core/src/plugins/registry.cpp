@@ -40,11 +40,12 @@ bool is_plain(const std::string& name) {
   });
 }
 
-void refuse_path(const Kind& kind, const std::string& name) {
+void refuse_path(const Kind& kind, const std::string& name, const std::string& option) {
   if (!is_plain(name))
     throw PluginError(in_quotes(name) + " is not the name of a " + kind.name +
                       " plugin: allowed are letters, digits and hyphens, not a path; give "
-                      "the plugin's directory by --plugin-path or GRIT_PLUGIN_PATH");
+                      "the plugin's directory by " +
+                      option + " or GRIT_PLUGIN_PATH");
 }
 
 /// The files of a plugin. A file that is found twice counts once, and one in the subfolder of a directory for this
@@ -66,7 +67,8 @@ std::vector<fs::path> find_files(const std::vector<fs::path>& directories, const
 
 }  // namespace
 
-Registry::Registry(std::vector<fs::path> directories) : directories_(std::move(directories)) {}
+Registry::Registry(std::vector<fs::path> directories, std::string option)
+    : directories_(std::move(directories)), option_(std::move(option)) {}
 
 void Registry::add(const PluginInfo& info) {
   assert(kind_named(info.kind).has_maker(info));
@@ -124,7 +126,7 @@ void Registry::refuse_second(const Key& key, bool is_built_in) const {
 fs::path Registry::file(const std::string& kind, const std::string& name) const {
   if (builtin_.contains({kind, name})) return {};
   const Kind& wanted = kind_named(kind);
-  refuse_path(wanted, name);
+  refuse_path(wanted, name, option_);
   if (auto found = find_files(directories_, wanted, name); !found.empty()) return std::move(found.front());
 
   const auto all = names(kind);
@@ -140,7 +142,8 @@ std::string Registry::search_text(const std::string& kind) const {
     const auto folder = (kind.empty() ? directory : directory / folder_of_kind).lexically_normal();
     searched.push_back(folder.string() + (fs::is_directory(folder, none) ? "" : " (no such directory)"));
   }
-  return "searched: " + listed(searched, "no directory") + "; --plugin-path DIR or GRIT_PLUGIN_PATH=DIR adds " +
+  return "searched: " + listed(searched, "no directory") + "; " + option_ +
+         (option_.starts_with("--") ? " DIR" : "=DIR") + " or GRIT_PLUGIN_PATH=DIR adds " +
          (kind.empty() ? "DIR" : "DIR/" + folder_of_kind);
 }
 

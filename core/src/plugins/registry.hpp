@@ -21,8 +21,9 @@ struct Installed {
 /// Not copyable: components hold a pointer to it. For use from one thread. Created components outlive it.
 class Registry {
  public:
-  /// Directories are searched in this order; each contains one folder per kind with files <name>.so.
-  explicit Registry(std::vector<std::filesystem::path> directories);
+  /// Directories are searched in this order; each contains one folder per kind with files <name>.so. `option`: what
+  /// names a further one, in messages.
+  explicit Registry(std::vector<std::filesystem::path> directories, std::string option = "--plugin-path");
   Registry(const Registry&) = delete;
   Registry& operator=(const Registry&) = delete;
 
@@ -56,6 +57,7 @@ class Registry {
   void refuse_second(const Key& key, bool is_built_in) const;
 
   std::vector<std::filesystem::path> directories_;
+  std::string option_;
   std::map<Key, const PluginInfo*> builtin_;
   mutable std::map<Key, const PluginInfo*> known_;  // checked and, unless built in, loaded
 };
@@ -65,5 +67,8 @@ class Registry {
 /// several builds.
 std::vector<std::filesystem::path> plugin_directories(const std::vector<std::string>& option,
                                                       const std::filesystem::path& beside);
+
+/// Why a directory that a user names cannot have plugins: a relative clause, empty if it can.
+std::string fault_of_plugin_directory(const std::filesystem::path& directory);
 
 }  // namespace grit

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
+#include <system_error>
 
+#include "format/names.hpp"
 #include "plugins/build_facts.hpp"
 #include "plugins/registry.hpp"
 
@@ -23,6 +26,23 @@ std::vector<std::filesystem::path> plugin_directories(const std::vector<std::str
   }
   directories.push_back(beside);
   return directories;
+}
+
+std::string fault_of_plugin_directory(const std::filesystem::path& directory) {
+  std::error_code none;
+  if (!std::filesystem::exists(directory, none)) return "which does not exist";
+  if (!std::filesystem::is_directory(directory, none)) return "which is a file";
+  const auto has_a_kind = [&](const std::filesystem::path& there) {
+    return std::ranges::any_of(
+        kinds, [&](const Kind& kind) { return std::filesystem::is_directory(there / kind.folder, none); });
+  };
+  const std::filesystem::directory_iterator inside(directory, none), end;
+  // Or one for each instruction set, each with folders of kinds.
+  if (has_a_kind(directory) || std::any_of(inside, end, [&](const auto& entry) { return has_a_kind(entry.path()); }))
+    return "";
+  std::vector<std::string> folders;
+  for (const Kind& kind : kinds) folders.push_back(kind.folder);
+  return "which has none of the folders " + listed(folders);
 }
 
 }  // namespace grit

@@ -1,7 +1,10 @@
 #include "simulation/live_scene.hpp"
 
+#include <algorithm>
 #include <string_view>
+#include <variant>
 
+#include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "simulation/needed_memory.hpp"
 #include "simulation/preflight.hpp"
@@ -47,20 +50,62 @@ bool LiveScene::advance_ramps(std::size_t increments) {
   return true;
 }
 
-bool LiveScene::set(const std::string& pointer, const Description& value) {
-  if (value.is_number() && known_.contains(pointer) && set_in_place(pointer, value.get<double>())) return true;
+bool LiveScene::appears_later(const std::string& material) const {
+  return std::ranges::any_of(now().bodies, [&](const auto& one) {
+    const BodiesDescription& group = one.second;
+    const auto stage = std::ranges::find(now().stages, group.stage, &StageDescription::name) - now().stages.begin();
+    // A stream keeps the density of the start.
+    return group.material == material && !group.stage.empty() &&
+           stage >= static_cast<std::ptrdiff_t>(current_.next_stage()) &&
+           !std::holds_alternative<StreamSource>(group.source.value());
+  });
+}
+
+void LiveScene::refuse_idle(const std::string& pointer, const SettingsChange& change) const {
+  const auto refuse = [&](const std::string& message) { throw DescriptionError({{"set", 0, pointer, message}}); };
+  for (const auto& [name, material] : change.materials) {
+    if (!material) continue;
+    // Bodies and contacts keep indices of materials.
+    const auto known = now().materials.find(name);
+    if (known == now().materials.end())
+      refuse("found the material \"" + name +
+             "\", which is not defined; allowed are materials that are defined when the run begins: add it to "
+             "/materials of the description");
+    else if (material->density != known->second.density && !appears_later(name))
+      refuse("found a new density of the material \"" + name +
+             "\", which would have no effect: bodies keep the density that they were made with, and no later stage "
+             "makes bodies of this material; allowed are "
+             "its values for contacts, or another density in the description");
+  }
+}
+
+bool LiveScene::set(const std::string& pointer, const Description& value, const std::function<void()>& take) {
+  if (value.is_number() && known_.contains(pointer) && set_in_place(pointer, value.get<double>())) {
+    take();
+    return true;
+  }
   const SettingsChange change = change_of(now(), pointer, value);
-  // Bodies and contacts keep indices of materials.
-  for (const auto& [name, material] : change.materials)
-    if (material && !now().materials.contains(name))
-      throw DescriptionError({{"set", 0, pointer,
-                               "found the material \"" + name +
-                                   "\", which is not defined; allowed are materials that are defined when the run "
-                                   "begins: add it to /materials of the description"}});
-  current_.apply(change);
+  refuse_idle(pointer, change);
+  const SettingsChange before = change.reverse(now());
+  const auto apply = [&](const SettingsChange& one) {
+    current_.apply(one);
+    bound_ = nullptr;
+    follow();
+    take();
+  };
+  try {
+    apply(change);
+  } catch (const PlacedError& error) {
+    apply(before);
+    std::vector<Problem> problems;
+    for (const PlacedError::Fault& fault : error.faults())
+      problems.push_back({"set", 0, pointer_of(fault.keys), fault.message});
+    throw DescriptionError(std::move(problems));
+  } catch (...) {
+    apply(before);
+    throw;
+  }
   known_.insert(pointer);
-  bound_ = nullptr;
-  follow();
   return false;
 }
 
@@ -98,6 +143,7 @@ std::optional<LiveScene::Number> LiveScene::found(const NumberPointer& place) {
   if (!current_.declare(place, nullptr, described)) return std::nullopt;
   const auto number = CheckedNumber::find(described, place.keys);
   if (!number) return std::nullopt;
+  if (place.section == "materials" && place.keys == std::vector<std::string>{"density"}) return std::nullopt;
   if (place.section == "materials" || place.section == "interfaces") {
     current_.declare(place, &*law_, live);
     law_.set_from_outside();

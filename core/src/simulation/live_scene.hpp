@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -32,9 +33,11 @@ class LiveScene {
   /// changed.
   bool advance_ramps(std::size_t increments);
   /// Sets a value independently of the stages, as a stage's change would. A number that was set before is set in place,
-  /// without reading anything, unless other parts have to change with it. Returns whether it was set in place. Throws
-  /// DescriptionError.
-  bool set(const std::string& pointer, const Description& value);
+  /// without reading anything, unless other parts have to change with it. `take` applies the present values. Returns
+  /// whether it was set in place. Throws DescriptionError, also for a value without effect from now on; nothing has
+  /// changed then.
+  bool set(
+      const std::string& pointer, const Description& value, const std::function<void()>& take = [] {});
   /// Sets a number in place without checks, as set() did in the run that was saved.
   void restore(const std::string& pointer, double value);
   /// Advances from the start to this stage, with `increments` done.
@@ -47,6 +50,9 @@ class LiveScene {
     std::optional<CheckedNumber> live;
   };
   void follow();
+  void refuse_idle(const std::string& pointer, const SettingsChange& change) const;
+  /// Whether a body of this material is made in a later stage.
+  bool appears_later(const std::string& material) const;
   bool set_in_place(const std::string& pointer, double value);
   /// Binds a number, once while parts stay where they are; null if it cannot be set in place.
   const Number* bind(const std::string& pointer);

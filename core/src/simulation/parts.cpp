@@ -30,8 +30,14 @@ Simulation::Parts::Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, 
 }
 
 void Simulation::Parts::start() {
+  refuse_failed();
   if (started) return;
-  at_first_instant(opened->scene.document, [this] { runner.start(); });
+  try {
+    at_first_instant(opened->scene.document, [this] { runner.start(); });
+  } catch (...) {
+    failure = std::current_exception();
+    throw;
+  }
   started = true;
   progress.enter_stage(), checkpoints.restart();
 }
@@ -39,17 +45,40 @@ void Simulation::Parts::start() {
 void Simulation::Parts::resume(const Checkpoint& checkpoint) {
   if (started) throw Error("a simulation that has begun cannot resume from a checkpoint; open the description again");
   started = true;
-  placed([&] { runner.resume(checkpoint); });
+  try {
+    placed([&] { runner.resume(checkpoint); });
+  } catch (...) {
+    failure = std::current_exception();
+    throw;
+  }
   progress.enter_stage(), checkpoints.restart();
 }
 
-StageRunner::Event Simulation::Parts::next(bool stop) {
+StageRunner::Event Simulation::Parts::next(bool stop) try {
+  refuse_failed();
   // Saved before the step, so that the checkpoint is the state at which the simulation stops.
   if (checkpoints.is_due(stop)) checkpoints.save([this] { return runner.save(); });
   const StageRunner::Event event = placed([&] { return runner.next(stop); });
   if (event == StageRunner::Event::stage_ended) progress.enter_stage();
   else if (event == StageRunner::Event::stepped) progress.step();
   return event;
+} catch (const NumericsError& error) {
+  // A time step that is too large can be set again; a stage that fails otherwise would fail again.
+  if (error.guard() != Guard::critical_step || runner.is_midway()) failure = std::current_exception();
+  throw;
+} catch (...) {
+  if (runner.is_midway()) failure = std::current_exception();
+  throw;
+}
+
+void Simulation::Parts::set(const std::string& pointer, const Description& value) {
+  start();
+  runner.set(pointer, value);
+}
+
+Checkpoint Simulation::Parts::save() {
+  start();
+  return runner.save();
 }
 
 void Simulation::Parts::show_instant() {

@@ -1,6 +1,7 @@
 // The parts of a Simulation, for the rest of the library.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <memory>
 
@@ -22,11 +23,17 @@ struct Simulation::Parts {
   /// null: nothing is recorded. Throws DescriptionError for faults found when the kernel and probes are made.
   Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, unsigned threads, Recorder* record = nullptr);
 
+  /// Throws `failure` again, if there is one. start(), next(), set() and save() do so first.
+  void refuse_failed() const {
+    if (failure) std::rethrow_exception(failure);
+  }
   /// Begins the first stage, if it has not begun.
   void start();
   void resume(const Checkpoint& checkpoint);
   /// One step, or the end of a stage, as in StageRunner::next(); with progress and checkpoints.
   StageRunner::Event next(bool stop);
+  void set(const std::string& pointer, const Description& value);
+  Checkpoint save();
   void show_instant();
   bool wants_to_stop() const { return interrupted && interrupted(); }
 
@@ -38,6 +45,9 @@ struct Simulation::Parts {
   CheckpointTimer checkpoints;
   std::function<bool()> interrupted;
   bool started = false;
+  /// Why the simulation cannot go on: what ended a step midway, or a stage that cannot end. Its bodies may have moved
+  /// while others have not.
+  std::exception_ptr failure;
 
  private:
   /// Runs `work`. Faults get their position in the description after the stages that have begun.
@@ -53,5 +63,12 @@ struct Simulation::Parts {
     });
   }
 };
+
+/// The parts of a simulation of a file, or of a description made by a program. `resumes`: without bodies, so that
+/// resume() has to follow.
+std::unique_ptr<Simulation::Parts> open_parts(const std::filesystem::path& file, const SimulationOptions& options,
+                                              bool resumes);
+std::unique_ptr<Simulation::Parts> open_parts(const Description& description, const SimulationOptions& options,
+                                              bool resumes);
 
 }  // namespace grit

@@ -129,9 +129,7 @@ void Faults::add(const std::vector<std::string>& pointers, std::size_t stages, c
 
 ReportFault Faults::report_of(std::size_t stages) {
   return [this, stages](const std::vector<std::string>& keys, const std::string& message) {
-    std::string pointer;
-    for (const std::string& key : keys) pointer += '/' + pointer_token(key);
-    add({pointer}, stages, message);
+    add({pointer_of(keys)}, stages, message);
   };
 }
 

@@ -29,13 +29,14 @@ std::filesystem::path file_of(const BeginDescription& begin) {
     throw PlacedError({"begin", "from"}, folder.string() + ": is not a folder; name the folder of results of a run");
   const bool frames = std::filesystem::exists(folder / "frames");
   const bool other = std::filesystem::exists(folder / (at_end ? "checkpoint.h5" : "final.h5"));
-  throw PlacedError({"begin", "from"},
-                    folder.string() + ": holds no " + file.filename().string() +
-                        (other && at_end ? "; the run is not complete: continue it with --resume, or begin at its last "
-                                           "checkpoint with \"at\": \"checkpoint\", or at a frame"
-                         : other         ? "; the run is complete: begin at its end with \"at\": \"end\""
-                         : frames        ? "; begin at a frame with \"at\": \"frame\""
-                                         : "; name the folder of results of a run"));
+  throw PlacedError(
+      {"begin", "from"},
+      folder.string() + ": holds no " + file.filename().string() +
+          (other && at_end ? "; the run is not complete: continue it with 'grit run --resume', or begin at its "
+                             "last checkpoint with \"at\": \"checkpoint\", or at a frame"
+           : other         ? "; the run is complete: begin at its end with \"at\": \"end\""
+           : frames        ? "; begin at a frame with \"at\": \"frame\""
+                           : "; name the folder of results of a run"));
 }
 
 /// `fields`: of the contact history of the sample.

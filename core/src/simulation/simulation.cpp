@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "grit/error.hpp"
 #include "input/scene.hpp"
 #include "simulation/first_instant.hpp"
 #include "simulation/parts.hpp"
@@ -10,18 +11,47 @@
 namespace grit {
 namespace {
 
+constexpr const char* sets_by = "sets";  // the member of SimulationOptions, in messages
+
+std::shared_ptr<const Registry> registry_of(const SimulationOptions& options) {
+  for (const std::string& folder : options.plugin_path)
+    if (const std::string fault = fault_of_plugin_directory(folder); !fault.empty())
+      throw FileError("plugin_path: found \"" + folder + "\", " + fault + "; allowed are folders of plugins");
+  return standard_registry(options.plugin_path, "plugin_path");
+}
+
 std::unique_ptr<Simulation::Parts> made(std::shared_ptr<const Registry> registry, Document document,
-                                        const SimulationOptions& options) {
+                                        const SimulationOptions& options, bool resumes) {
   Scene scene = read_scene(std::move(document), *registry);
   const auto opened = std::make_shared<OpenedScene>(std::move(registry), std::move(scene));
-  const bool resumes = options.checkpoint.has_value();
-  auto parts = std::make_unique<Simulation::Parts>(
+  return std::make_unique<Simulation::Parts>(
       opened, resumes ? opened->prepare_to_resume(options.state) : opened->prepare(options.state), options.threads);
-  if (resumes) parts->resume(*options.checkpoint);
+}
+
+std::unique_ptr<Simulation::Parts> made(Document written, const SimulationOptions& options, bool resumes) {
+  auto registry = registry_of(options);
+  Document document = expanded_document(std::move(written), options.sets, *registry, sets_by);
+  return made(std::move(registry), std::move(document), options, resumes);
+}
+
+std::unique_ptr<Simulation::Parts> resumed(std::unique_ptr<Simulation::Parts> parts, const SimulationOptions& options) {
+  if (options.checkpoint) parts->resume(*options.checkpoint);
   return parts;
 }
 
 }  // namespace
+
+std::unique_ptr<Simulation::Parts> open_parts(const std::filesystem::path& file, const SimulationOptions& options,
+                                              bool resumes) {
+  auto registry = registry_of(options);
+  Document document = load_document(file, options.sets, *registry, sets_by);
+  return made(std::move(registry), std::move(document), options, resumes);
+}
+
+std::unique_ptr<Simulation::Parts> open_parts(const Description& description, const SimulationOptions& options,
+                                              bool resumes) {
+  return made(Document(description, "description"), options, resumes);
+}
 
 Simulation::Simulation(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -29,22 +59,15 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
 Simulation Simulation::open(const std::filesystem::path& file, const SimulationOptions& options) {
-  auto registry = standard_registry(options.plugin_path);
-  Document document = load_document(file, options.sets, *registry);
-  return Simulation(made(std::move(registry), std::move(document), options));
+  return Simulation(resumed(open_parts(file, options, options.checkpoint.has_value()), options));
 }
 
 Simulation Simulation::from_text(const std::string& text, const SimulationOptions& options, const std::string& name) {
-  auto registry = standard_registry(options.plugin_path);
-  Document document = expanded_document(Document::parse(text, name), options.sets, *registry);
-  return Simulation(made(std::move(registry), std::move(document), options));
+  return Simulation(resumed(made(Document::parse(text, name), options, options.checkpoint.has_value()), options));
 }
 
-Simulation::Simulation(const Description& description, const SimulationOptions& options) {
-  auto registry = standard_registry(options.plugin_path);
-  Document document = expanded_document(Document(description, "description"), options.sets, *registry);
-  parts_ = made(std::move(registry), std::move(document), options);
-}
+Simulation::Simulation(const Description& description, const SimulationOptions& options)
+    : Simulation(resumed(open_parts(description, options, options.checkpoint.has_value()), options)) {}
 
 Forecast Simulation::check() {
   Parts& parts = *parts_;
@@ -89,8 +112,8 @@ std::shared_ptr<const void> Simulation::keep(WorldArray array) { return parts_->
 Description Simulation::description() const { return resolved(*parts_->opened->scene.description); }
 
 void Simulation::set(const std::string& pointer, const Description& value) {
-  parts_->start();
-  if (!done()) parts_->runner.set(pointer, value);
+  if (done()) throw Error("the simulation is done; a value that is set now would have no effect");
+  parts_->set(pointer, value);
 }
 
 void Simulation::every_time(double seconds, Observer observer) {
@@ -113,10 +136,7 @@ void Simulation::on_checkpoint(std::function<void(const Checkpoint&)> keep, doub
 
 void Simulation::interrupt_when(std::function<bool()> condition) { parts_->interrupted = std::move(condition); }
 
-Checkpoint Simulation::save() {
-  parts_->start();
-  return parts_->runner.save();
-}
+Checkpoint Simulation::save() { return parts_->save(); }
 
 void Simulation::resume(const Checkpoint& checkpoint) { parts_->resume(checkpoint); }
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "threads/stopwatch.hpp"
 #include "description/placed_error.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
 #include "run/falling.hpp"
 #include "simulation/expected_stages.hpp"
 #include "storage/parsed_json.hpp"
+#include "threads/stopwatch.hpp"
 
 namespace grit {
 namespace {
@@ -65,11 +65,10 @@ void StageRunner::begin_recording() {
 void StageRunner::resume(const Checkpoint& checkpoint) try {
   Archive archive(checkpoint.state);
   restore_kernel(archive);
-  if (done()) throw Error("a checkpoint of a complete simulation; there is nothing to resume");
   serialize(archive);
   if (!archive.at_end()) throw Error("a checkpoint holds more than this simulation restores");
   begin_recording();
-  enter_stage();
+  if (!done()) enter_stage();
 } catch (const Description::exception&) {
   refuse_texts();
 }
@@ -122,13 +121,23 @@ void StageRunner::enter_stage() {
     if (observer.watches(description().name)) watching_.push_back(&observer);
 }
 
+template <class Work>
+void StageRunner::step(Work work) try {
+  const Stopwatch watch(stepping_);
+  midway_ = true;
+  work();
+  midway_ = false;
+  instant_ = {};
+} catch (const NumericsError& error) {
+  midway_ = error.guard() != Guard::critical_step;  // the time step is checked before anything moves
+  throw;
+}
+
 StageRunner::Event StageRunner::next(bool stop) {
   const StageDescription& stage = description();
   decide();
   if (!instant_.may_end && !stop && !instant_.has_forces && !forces_are_needed(stage)) {
-    const Stopwatch watch(stepping_);
-    kernel_.step_on();
-    instant_ = {};
+    step([this] { kernel_.step_on(); });
     return Event::stepped;
   }
   // Before forces are found: a checkpoint that is saved now gives the same bits.
@@ -142,15 +151,12 @@ StageRunner::Event StageRunner::next(bool stop) {
   }
   if (stop) return Event::stopped;
   if (too_late(stage)) fail_late(stage);
-  const Stopwatch watch(stepping_);
-  kernel_.advance();
-  instant_ = {};
+  step([this] { kernel_.advance(); });
   return Event::stepped;
 }
 
 void StageRunner::show_instant() {
-  if (done()) return;  // the end of the stage has found them
-  decide();
+  if (!done()) decide();
   find_forces();
 }
 
@@ -185,8 +191,10 @@ void StageRunner::end_stage(const StageDescription& stage) {
                           number(e) + "; wish for another one, or prepare the specimen otherwise");
   }
   const double end = stage_end(stage);
+  midway_ = true;
   ++stage_;
   if (!done()) begin_stage(end);
+  midway_ = false;
 }
 
 double StageRunner::stage_end(const StageDescription& stage) const {
@@ -219,8 +227,7 @@ void StageRunner::call(const Cadence& cadence, std::function<void(const World&)>
 }
 
 void StageRunner::set(const std::string& pointer, const Description& value) {
-  const bool in_place = live_.set(pointer, value);
-  kernel_.change(live_.now(), live_.components());
+  const bool in_place = live_.set(pointer, value, [this] { kernel_.change(live_.now(), live_.components()); });
   instant_.has_forces = false;
   note({stage_, increments_, pointer, value.dump(), in_place});
 }

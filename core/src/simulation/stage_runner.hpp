@@ -41,6 +41,8 @@ class StageRunner {
   /// Finds the forces of the present instant. Which step ends the stage or is sampled does not depend on it.
   void show_instant();
 
+  /// Whether an exception ended a step, or the start of a stage, midway: next() cannot be called again.
+  bool is_midway() const { return midway_; }
   bool done() const { return stage_ == scene_.stages.size(); }
   /// Index of the present stage, and how many have begun.
   std::size_t stage() const { return stage_; }
@@ -91,6 +93,9 @@ class StageRunner {
   void ramp();
   void decide();
   void find_forces();
+  /// One step of the kernel, by `work`.
+  template <class Work>
+  void step(Work work);
   /// Keeps a value that was set, and drops the one that it replaces.
   void note(Set set);
   void serialize(Archive& archive);
@@ -122,6 +127,7 @@ class StageRunner {
   std::vector<Observer*> watching_;  // those that sample in the present stage
   std::size_t stage_ = 0, stages_begun_ = 0;
   Instant instant_;
+  bool midway_ = false;  // between two instants
   StageStart start_;
   std::size_t increments_ = 0;  // of the stage's ramps, done
   std::vector<Set> sets_;

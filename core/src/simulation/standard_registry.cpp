@@ -7,8 +7,8 @@
 
 namespace grit {
 
-std::unique_ptr<Registry> standard_registry(const std::vector<std::string>& plugin_path) {
-  auto registry = std::make_unique<Registry>(plugin_directories(plugin_path, library_directory()));
+std::unique_ptr<Registry> standard_registry(const std::vector<std::string>& plugin_path, const std::string& option) {
+  auto registry = std::make_unique<Registry>(plugin_directories(plugin_path, library_directory()), option);
   registry->add(sphere_body());
   registry->add(clump_body());
   for (const PluginInfo& engine : builtin_engines()) registry->add(engine);

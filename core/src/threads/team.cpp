@@ -52,7 +52,7 @@ Team::Team(unsigned threads) : stretch_(std::make_unique<Stretch[]>(threads)) {
     stop();
     throw FileError("cannot start " + std::to_string(threads) + " threads, only " + std::to_string(started) + ": " +
                     error.code().message() +
-                    "; use fewer (--threads), or allow this user more processes or memory (ulimit)");
+                    "; use fewer threads, or allow this user more processes or memory (ulimit)");
   } catch (...) {
     stop();
     throw;
