@@ -1,4 +1,4 @@
-"""Errors of grit. str() is the text that the command line prints: where, what was found, what is allowed, what to do."""
+"""Errors of grit. str() is a text for users: where, what was found, what is allowed, what to do."""
 
 import difflib
 from typing import NamedTuple, Optional
@@ -11,7 +11,7 @@ class Error(Exception):
 class Problem(NamedTuple):
     """One problem in a description."""
 
-    file: str            # path, "--set", or "description" for one made in Python
+    file: str            # path, or "description", "sets" or "set" for what was made in Python
     line: Optional[int]  # from 1; None for a description without lines
     pointer: str         # JSON pointer
     message: str         # what was found and what is allowed
@@ -26,7 +26,7 @@ class DescriptionError(Error):
 
 
 class NumericsError(Error):
-    """A guard stopped the simulation, or a stage failed."""
+    """A guard stopped the simulation, or a stage failed: the simulation has failed, and run() raises the error again."""
 
     def __init__(self, message, cause="", guard="none", pointer=""):
         super().__init__(message)
@@ -50,7 +50,7 @@ class UnknownName(Error, KeyError):
         super().__init__(name)
         near = difflib.get_close_matches(str(name), names, 1)
         listed = ", ".join(names) if names else "none"
-        self.message = f"there is no {what} {name!r}" + (f"; did you mean {near[0]!r}?" if near else "") + f" There are: {listed}"
+        self.message = f"there is no {what} {name!r}" + (f"; did you mean {near[0]!r}?" if near else ".") + f" There are: {listed}"
 
     def __str__(self):
         return self.message

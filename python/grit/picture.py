@@ -2,6 +2,8 @@
 
 import pathlib
 
+from .errors import FileError
+
 
 class Picture:
     """An SVG picture, which notebooks show."""
@@ -17,4 +19,10 @@ class Picture:
 
     def save(self, path):
         """Writes the SVG."""
-        pathlib.Path(path).write_text(self.svg, encoding="utf-8")
+        path = pathlib.Path(path)
+        if path.suffix != ".svg":
+            raise ValueError(f"path: found {str(path)!r}; allowed is a name that ends in .svg")
+        try:
+            path.write_text(self.svg, encoding="utf-8")
+        except OSError as error:
+            raise FileError(f"{path}: cannot be written: {error.strerror}") from error

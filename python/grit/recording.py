@@ -10,8 +10,14 @@ from .errors import Error, UnknownName
 class Recording(Mapping):
     """Values by name as arrays, one row per sample, with `time` [s] and `step`."""
 
-    def __init__(self, name, units):
-        self.name, self._units = name, {"time": "s", "step": "1", **(units or {})}
+    def __init__(self, name, units, is_unit):
+        self.name, self._given = name, {} if units is None else units
+        if not isinstance(self._given, Mapping):
+            raise TypeError(f"units: found {units!r}; allowed is a dict {{\"value\": \"unit\"}}, such as {{\"pressure\": \"Pa\"}}")
+        for value, unit in self._given.items():
+            if not isinstance(unit, str) or not is_unit(unit):
+                raise ValueError(f"units: found {unit!r} for {value!r}; allowed is a unit, such as \"Pa\", \"kN m\", \"1/s\", or \"1\" for a number without one")
+        self._units = {"time": "s", "step": "1", **self._given}
         self._rows = {"time": [], "step": []}
 
     def add(self, time, step, values):
@@ -26,6 +32,8 @@ class Recording(Mapping):
             raise Error(f"probe {self.name!r} returned {sorted(row)}; allowed are the names of its first sample: {sorted(known)}")
         if wrong := row.keys() & {"time", "step"}:
             raise Error(f"probe {self.name!r} returned {sorted(wrong)}, which every sample has; choose other names")
+        if unknown := [key for key in self._given if key not in row]:
+            raise Error(f"probe {self.name!r} has a unit of {unknown[0]!r}, which it does not return; it returns {sorted(row)}")
         for key, value in {"time": time, "step": step, **row}.items():
             self._rows.setdefault(key, []).append(value)
 

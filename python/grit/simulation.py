@@ -4,14 +4,10 @@ import inspect
 import json
 import math
 import numbers
-import operator
-import os
 from collections.abc import Mapping
 
-import numpy
-
-from . import compiled, progress as progress_display
-from .errors import DescriptionError, Error, Problem, UnknownName
+from . import arguments, compiled, progress as progress_display
+from .errors import Error, UnknownName
 from .picture import Picture
 from .recording import Recording
 from .world import Bodies, Cell, Clumps, Contacts, Departures, Energies, Walls
@@ -20,58 +16,13 @@ _grit = compiled.load()
 Checkpoint = _grit.Checkpoint
 
 _STATES = ("rotation", "displacement", "energy")
-
-
-def _plain(value, pointer="", source="description"):
-    """A value as JSON has it; numbers, arrays and paths of Python and numpy are converted."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(one, f"{pointer}/{str(key).replace('~', '~0').replace('/', '~1')}", source) for key, one in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(one, f"{pointer}/{i}", source) for i, one in enumerate(value)]
-    if isinstance(value, (numpy.ndarray, numpy.generic)):
-        return _plain(value.tolist(), pointer, source)
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    if value is None or isinstance(value, (bool, int, str)) or (isinstance(value, float) and math.isfinite(value)):
-        return value
-    message = f"found {value!r} of type {type(value).__name__}; allowed are dicts, lists, finite numbers, texts, True, False and None"
-    raise DescriptionError(f"{source}: {pointer or '/'}: {message}", [Problem(source, None, pointer, message)])
-
-
-def _json(value, pointer="", source="description"):
-    return json.dumps(_plain(value, pointer, source))
-
-
-def _assignments(sets):
-    if isinstance(sets, Mapping):
-        return [f"{pointer}={_json(value, pointer, '--set')}" for pointer, value in sets.items()]
-    if isinstance(sets, str):
-        raise TypeError("sets: found a text; allowed is a dict {\"/pointer\": value} or a list of \"/pointer=value\"")
-    return list(sets)
-
-
-def _paths(paths):
-    return [os.fspath(paths)] if isinstance(paths, (str, os.PathLike)) else [os.fspath(path) for path in paths]
-
-
-def _positive(name, value, kind=numbers.Real):
-    if isinstance(value, bool) or not isinstance(value, kind):
-        raise TypeError(f"{name}: found {value!r}; allowed is {'a number' if kind is numbers.Real else 'a whole number'} above 0")
-    if not 0 < value < math.inf:
-        raise ValueError(f"{name}: found {value!r}; allowed is a {'finite' if kind is numbers.Real else 'whole'} number above 0")
-    return value
-
-
-def _box(low, high):
-    if (low is None) != (high is None):
-        raise TypeError("give both low and high, or none for the specimen")
-    return None if low is None else ([float(x) for x in low], [float(x) for x in high])
+_MOST_THREADS = 2**15
 
 
 def _with_simulation(function):
     """The function as one that takes the simulation, also if it has no parameter without a default."""
     if not callable(function):
-        raise TypeError(f"found {function!r}; allowed is a function")
+        raise TypeError(f"found {function!r}; allowed is a function, as @sim.every(steps=100) decorates it")
     try:
         required = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
         takes = any(one.kind in required and one.default is one.empty for one in inspect.signature(function).parameters.values())
@@ -85,29 +36,29 @@ class Simulation:
 
     threads: results are identical for any number.
     sets: changes of the description, {"/pointer": value} or ["/pointer=value"]; texts may have units, "200 kPa".
-    plugin_path: folders with plugins, before those of GRIT_PLUGIN_PATH and those next to the library.
+    plugin_path: a folder with plugins, or several, before those of GRIT_PLUGIN_PATH and those next to the library.
     keep: state that is kept although nothing in the description needs it: "rotation", "displacement", "energy".
-    checkpoint: a Checkpoint from which the simulation continues; the files that bodies came from may be gone.
+    checkpoint: from which the simulation continues, as by resume(); the files that bodies came from may be gone.
 
     Raises DescriptionError with all problems, FileError, PluginError. Relative paths in a dict start in the working directory.
     """
 
     def __init__(self, description, threads=1, sets=(), plugin_path=(), *, keep=(), checkpoint=None):
         is_json = isinstance(description, Mapping)
-        if not is_json and not isinstance(description, (str, os.PathLike)):
-            raise TypeError(f"description: found {type(description).__name__}; allowed is the path of a file, or a dict")
-        keep = [keep] if isinstance(keep, str) else list(keep)
+        self._name = "description" if is_json else arguments.path("description", description, "the path of a file, or a dict")
+        keep = [keep] if isinstance(keep, str) else arguments.several("keep", keep, f"a list of {', '.join(_STATES)}")
         for one in keep:
             if one not in _STATES:
                 raise UnknownName("state", one, _STATES)
-        self._name = "description" if is_json else os.fspath(description)
-        self._core = _grit.Simulation(_json(description) if is_json else self._name, is_json, _positive("threads", threads, numbers.Integral),
-                                      _assignments(sets), _paths(plugin_path), keep, checkpoint)
+        self._core = _grit.Simulation(arguments.as_json(description) if is_json else self._name, is_json, arguments.whole("threads", threads, 1, _MOST_THREADS),
+                                      arguments.assignments(sets), arguments.folders("plugin_path", plugin_path), keep, checkpoint is not None)
         self._observers, self._recordings, self._display = [], {}, None
         self._bodies, self._contacts, self._clumps = Bodies(self._core), Contacts(self._core), Clumps(self._core)
+        if checkpoint is not None:
+            self.resume(checkpoint)
 
     def __repr__(self):
-        now = "done" if self.done else f"stage {self.stage!r}" if self.stage else "not begun"
+        now = "done" if self.done else "failed" if self.failed else f"stage {self.stage!r}" if self.stage else "not begun"
         bodies = len(self.bodies)
         return f"<simulation of {self._name}: {self.time:.6g} s, step {self.step}, {now}, {bodies} {'body' if bodies == 1 else 'bodies'}>"
 
@@ -117,25 +68,25 @@ class Simulation:
         """Runs to the end, or takes `steps` time steps, or runs until a simulated time [s], through the ends of stages.
 
         progress: True or False; by default progress is shown in a terminal and in a notebook, after half a second.
-        Raises NumericsError if a guard trips or a stage does not end within its limit; what a callback raises; KeyboardInterrupt.
-        All end the run between two steps, and it may go on.
+        Takes fewer steps if the last stage ends. Raises Error, for steps and times, if all stages have ended before: see `done`.
+        Raises what a callback raises, and KeyboardInterrupt: these end the run between two steps, and it may go on.
+        Raises NumericsError if a guard trips or a stage does not end within its limit. The simulation has then failed: what is there can be
+        looked at, and run() raises the same error again. After a time step above the critical one, set another, and go on.
         """
         if steps is not None:
             if until is not None:
                 raise TypeError("give one of steps and until")
-            if not isinstance(steps, int):
-                steps = operator.index(steps)
-            if steps < 0:
-                raise ValueError(f"steps: found {steps}; allowed is a whole number from 0")
+            steps = arguments.whole("steps", steps, 0)
         elif until is not None:
-            if not isinstance(until, numbers.Real) or math.isnan(until):
+            if isinstance(until, bool) or not isinstance(until, numbers.Real) or math.isnan(until):
                 raise TypeError(f"until: found {until!r}; allowed is a simulated time in seconds")
+            until = float(until)
             if until < self.time - self.dt:
                 raise ValueError(f"until: found {until} s, but the simulation is at {self.time} s")
         self._run(steps, until, False, progress)
 
     def run_stage(self, *, progress=None):
-        """Runs the present stage to its end."""
+        """Runs the present stage to its end. Raises as run() does, and Error if all stages have ended."""
         self._run(None, None, True, progress)
 
     def _run(self, steps, until, stage, progress):
@@ -152,31 +103,39 @@ class Simulation:
 
     def set(self, pointer, value):
         """Sets a value of the description from now on, as `change` of a stage does: of a material, interface, wall or engine, of the rates or
-        servo of /domain, of /time_step or /guards. SI, or a text with a unit. Raises DescriptionError."""
-        self._core.set(pointer, _json(value, pointer, "set"))
+        servo of /domain, of /time_step or /guards. SI, or a text with a unit. Raises DescriptionError, also for what has no effect any more,
+        such as the density of bodies that are there; nothing has changed then."""
+        self._core.set(arguments.text("pointer", pointer, "/materials/sand/friction_angle"), arguments.as_json(value, pointer, "set"))
 
     def save(self, path=None):
         """The complete state, from which a simulation of the same description continues with identical results: as a Checkpoint, or in a file."""
         if path is None:
             return self._core.save()
-        self._core.write(os.fspath(path))
+        self._core.write(arguments.path("path", path))
+        return None
 
     def resume(self, checkpoint):
-        """Continues from a Checkpoint, or a file that save() wrote, of the same description, before the first step."""
-        self._core.resume(checkpoint if isinstance(checkpoint, Checkpoint) else self._core.read(os.fspath(checkpoint)))
+        """Continues from a Checkpoint, or a file that save() wrote, of the same description, before the first step. Raises Error for another
+        description; its guards may be others."""
+        if not isinstance(checkpoint, Checkpoint):
+            checkpoint = _grit.read_checkpoint(arguments.path("checkpoint", checkpoint, "a Checkpoint, or the path of a file that save() wrote"))
+        self._core.resume(checkpoint)
 
     # Callbacks
 
     def every(self, *, time=None, steps=None):
         """Decorates a function that is called at the start of each stage and then at this interval of simulated time [s], or of steps.
         It takes the simulation, or nothing. What it raises ends the run."""
+        return self._at_interval("time", time, "steps", steps)
+
+    def _at_interval(self, time_name, time, steps_name, steps):
         if (time is None) == (steps is None):
-            raise TypeError("give one of time and steps")
+            raise TypeError(f"give one of {time_name} and {steps_name}")
         if time is not None:
-            _positive("time", time)
+            interval, register = arguments.positive(time_name, time), self._core.every_time
         else:
-            _positive("steps", steps, numbers.Integral)
-        return lambda function: self._observe(function, lambda: self._core.every_steps(int(steps)) if time is None else self._core.every_time(float(time)))
+            interval, register = arguments.whole(steps_name, steps, 1), self._core.every_steps
+        return lambda function: self._observe(function, lambda: register(interval))
 
     def at_stage_end(self, function):
         """Decorates a function that is called at the end of each stage."""
@@ -207,7 +166,8 @@ class Simulation:
     def probe(self, name, *, every_time=None, every_steps=None, units=None):
         """Decorates a function whose result, a dict of numbers, is recorded at an interval: series(name) has the values as arrays.
         units: {value: unit}. Python is slow: probes of the description are faster and in the results of `grit run`."""
-        recording = Recording(name, units)
+        recording = Recording(arguments.text("name", name, "heights"), units, _grit.is_unit)
+        at_interval = self._at_interval("every_time", every_time, "every_steps", every_steps)
 
         def decorate(function):
             sample = _with_simulation(function)
@@ -216,13 +176,13 @@ class Simulation:
                 recording.add(simulation.time, simulation.step, sample(simulation))
             if name in self._recordings:  # a cell of a notebook that is run again
                 self.remove(self._recordings[name][1])
-            self.every(time=every_time, steps=every_steps)(record)
+            at_interval(record)
             self._recordings[name] = recording, record
             return function
         return decorate
 
     def series(self, name):
-        """What the probe of this name has recorded."""
+        """What the probe of this name has recorded. Those of the description are in the results of `grit run`."""
         if name not in self._recordings:
             raise UnknownName("probe", name, list(self._recordings))
         return self._recordings[name][0]
@@ -234,6 +194,7 @@ class Simulation:
     dt = property(lambda self: self._core.dt, doc="time step [s]")
     stage = property(lambda self: self._core.stage, doc="name of the present stage; empty before the first step")
     done = property(lambda self: self._core.done, doc="whether all stages have ended")
+    failed = property(lambda self: self._core.failed, doc="whether an error ended the simulation, which run() raises again")
     bodies = property(lambda self: self._bodies, doc="arrays with one row per body")
     contacts = property(lambda self: self._contacts, doc="arrays with one row per contact")
     clumps = property(lambda self: self._clumps, doc="arrays with one row per clump")
@@ -250,7 +211,7 @@ class Simulation:
     def show(self, view="xz", color="speed"):
         """The grains as a picture, which notebooks show. view: "xz", "xy", "yz"; color: "speed", "radius", "rotation", "displacement".
         Unbounded walls are not drawn."""
-        return Picture(self._core.picture(view, color))
+        return Picture(self._core.picture(arguments.text("view", view, "xz"), arguments.text("color", color, "speed")))
 
     @property
     def energies(self):
@@ -262,11 +223,11 @@ class Simulation:
 
     def stress(self, low=None, high=None):
         """Mean stress [Pa] in the specimen, or in a box, compression positive (Love-Weber), 3 × 3."""
-        return self._core.stress(_box(low, high))
+        return self._core.stress(arguments.box(low, high))
 
     def void_ratio(self, low=None, high=None):
         """Volume of voids over volume of solids in the specimen, or in a box."""
-        return self._core.void_ratio(_box(low, high))
+        return self._core.void_ratio(arguments.box(low, high))
 
     @property
     def description(self):

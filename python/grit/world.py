@@ -81,6 +81,8 @@ class Bodies:
     def rows_of(self, ids):
         """Rows of the bodies with these ids, at this instant: `position[rows_of(ids)]` follows bodies. Raises KeyError for a body that left."""
         now, wanted = self.id, numpy.asarray(ids)
+        if wanted.size and wanted.dtype.kind not in "iu":
+            raise TypeError(f"ids: found {ids!r}; allowed is a whole number, or a list of them")
         order = numpy.argsort(now)
         place = numpy.minimum(numpy.searchsorted(now, wanted, sorter=order), len(now) - 1)
         rows = order[place] if len(now) else place

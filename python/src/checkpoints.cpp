@@ -1,26 +1,34 @@
 #include "checkpoints.hpp"
 
+#include <utility>
+
+#include "grit/error.hpp"
 #include "output/checkpoint.hpp"
 #include "output/plugins_used.hpp"
 #include "simulation/parts.hpp"
+#include "storage/state_file.hpp"
 
 namespace grit::python {
-namespace {
 
-RunFacts facts_of(Simulation& simulation) {
+Description facts_of(Simulation& simulation) {
   const OpenedScene& opened = *simulation.parts().opened;
-  return {.description = simulation.description(),
-          .plugins = plugins_used(*opened.scene.description, *opened.registry)};
+  return checkpoint_facts(
+      {.description = simulation.description(), .plugins = plugins_used(*opened.scene.description, *opened.registry)});
 }
 
-}  // namespace
-
-void write(const std::filesystem::path& path, Simulation& simulation, const Checkpoint& checkpoint) {
-  write_checkpoint(path, facts_of(simulation), checkpoint);
+void check_fits(const SavedState& saved, const Description& facts) {
+  check_facts(saved.name, *saved.facts, facts, ResumedBy::python);
 }
 
-Checkpoint read(const std::filesystem::path& path, Simulation& simulation) {
-  return read_checkpoint(path, facts_of(simulation));
+void write_saved(const std::filesystem::path& path, const SavedState& saved) {
+  write_state(path, {*saved.facts, saved.checkpoint});
+}
+
+SavedState read_saved(const std::filesystem::path& path) try {
+  StateFile file = read_state(path);
+  return {std::move(file.checkpoint), std::make_shared<const Description>(std::move(file.facts)), path.string()};
+} catch (const FileError& error) {
+  throw FileError(error.what() + std::string("\n  it is not a complete checkpoint of this grit; run from the start"));
 }
 
 }  // namespace grit::python

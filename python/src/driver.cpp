@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "format/number.hpp"
 #include "grit/error.hpp"
 #include "simulation/parts.hpp"
 
@@ -54,6 +55,19 @@ void Driver::refuse_while_running(const char* what) const {
     throw Error(std::string(what) + " cannot be called in a callback of the same simulation; call it after run()");
 }
 
+/// A goal that cannot be reached, so that a loop up to a condition would never end.
+void Driver::refuse_done(const Goal& goal) const {
+  if (!simulation_.done()) return;
+  const World& world = simulation_.world();
+  const Goal whole;
+  const bool steps = goal.steps != whole.steps && goal.steps > 0,
+             later = goal.time != whole.time && goal.time > world.time() + 0.5 * world.dt();
+  if (!goal.stage && !steps && !later) return;
+  throw Error("the simulation is done: its last stage, \"" + world.stage() + "\", ended at " + number(world.time()) +
+              " s, so that it takes no more steps; let loops end where `sim.done` is True, or give this stage a later "
+              "end");
+}
+
 bool Driver::stops() {
   if (!runs_) return false;
   const World& world = simulation_.world();
@@ -85,6 +99,8 @@ void Driver::report(const Progress& now) {
 
 void Driver::run(const py::object& owner, const Goal& goal, bool shows_progress) {
   refuse_while_running("run()");
+  simulation_.parts().refuse_failed();
+  refuse_done(goal);
   // The balance begins when it is first read.
   if (!has_begun_ && simulation_.parts().kernel.state().bodies.energies())
     static_cast<void>(world_with_forces().energies());
@@ -100,13 +116,14 @@ void Driver::run(const py::object& owner, const Goal& goal, bool shows_progress)
     running.free([&] { return goal.stage ? simulation_.run_stage() : simulation_.run(); });
     has_forces_ = true;
   } catch (const NumericsError&) {
-    has_forces_ = true;  // those of the failure
+    has_forces_ = failed();  // those of the failure
     throw;
   }
 }
 
 Forecast Driver::check() {
   refuse_while_running("check()");
+  simulation_.parts().refuse_failed();
   Running running(*this);
   const Forecast forecast = running.free([&] { return simulation_.check(); });
   has_forces_ = !has_begun_;
@@ -115,24 +132,35 @@ Forecast Driver::check() {
 
 void Driver::set(const std::string& pointer, const std::string& value) {
   refuse_other_threads();
-  if (simulation_.done()) throw Error("the simulation is done; a value that is set now would have no effect");
+  simulation_.parts().refuse_failed();
   arrays_.let_go();
   has_begun_ = true, has_forces_ = false;
   simulation_.set(pointer, Description::parse(value));
 }
 
-Checkpoint Driver::save() {
-  refuse_while_running("save()");
-  Running running(*this);
-  has_begun_ = true;
-  return running.free([&] { return simulation_.save(); });
+std::shared_ptr<const Description> Driver::facts() {
+  if (facts_ == nullptr) facts_ = std::make_shared<const Description>(facts_of(simulation_));
+  return facts_;
 }
 
-void Driver::resume(const Checkpoint& checkpoint) {
-  refuse_while_running("resume()");
+SavedState Driver::save() {
+  refuse_while_running("save()");
+  simulation_.parts().refuse_failed();
   Running running(*this);
   has_begun_ = true;
-  running.free([&] { simulation_.resume(checkpoint); });
+  return running.free([&] { return SavedState{simulation_.save(), facts()}; });
+}
+
+void Driver::resume(const SavedState& saved) {
+  refuse_while_running("resume()");
+  if (has_begun_)
+    throw Error("a simulation that has begun cannot resume from a checkpoint; open the description again");
+  Running running(*this);
+  running.free([&] {
+    check_fits(saved, *facts());
+    has_begun_ = true;
+    simulation_.resume(saved.checkpoint);
+  });
 }
 
 std::size_t Driver::every_time(double seconds) {
@@ -178,6 +206,11 @@ const World& Driver::world_with_forces() {
 bool Driver::done() const {
   refuse_other_threads();
   return simulation_.done();
+}
+
+bool Driver::failed() {
+  refuse_other_threads();
+  return simulation_.parts().failure != nullptr;
 }
 
 Simulation& Driver::simulation() {

@@ -6,11 +6,13 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "arrays.hpp"
+#include "checkpoints.hpp"
 #include "grit/simulation.hpp"
 
 namespace grit::python {
@@ -36,8 +38,9 @@ class Driver {
   Forecast check();
   /// `value`: JSON.
   void set(const std::string& pointer, const std::string& value);
-  Checkpoint save();
-  void resume(const Checkpoint& checkpoint);
+  SavedState save();
+  /// Throws, as check_facts() does, for a state of another simulation, and Error for one that has begun.
+  void resume(const SavedState& saved);
 
   /// Numbers count from 0, over all three.
   std::size_t every_time(double seconds);
@@ -49,6 +52,8 @@ class Driver {
   const World& world_with_forces();
   Arrays& arrays() { return arrays_; }
   bool done() const;
+  /// Whether an error ended it, so that it cannot go on.
+  bool failed();
   /// Throws if the simulation runs in another thread.
   Simulation& simulation();
 
@@ -57,12 +62,15 @@ class Driver {
   class Running;
   void refuse_other_threads() const;
   void refuse_while_running(const char* what) const;
+  void refuse_done(const Goal& goal) const;
+  std::shared_ptr<const Description> facts();
   bool stops();
   void observe(std::size_t number);
   void report(const Progress& progress);
 
   Simulation simulation_;
   Arrays arrays_{simulation_};
+  std::shared_ptr<const Description> facts_;  // of its checkpoints, once they are needed
   std::size_t observers_ = 0;
   bool has_begun_ = false, has_forces_ = false;
 

@@ -52,9 +52,7 @@ void translate(std::exception_ptr thrown) {
   } catch (const DescriptionError& error) {
     raise("DescriptionError", error.what(), problems_of(error));
   } catch (const NumericsError& error) {
-    std::string pointer;
-    for (const std::string& key : error.keys()) pointer += '/' + pointer_token(key);
-    raise("NumericsError", error.what(), error.cause(), name_of(error.guard()), pointer);
+    raise("NumericsError", error.what(), error.cause(), name_of(error.guard()), pointer_of(error.keys()));
   } catch (const PluginError& error) {
     raise("PluginError", error.what());
   } catch (const FileError& error) {

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,8 +12,11 @@
 #include "checkpoints.hpp"
 #include "driver.hpp"
 #include "errors.hpp"
+#include "grit/error.hpp"
+#include "input/units.hpp"
 #include "pictures.hpp"
 #include "plugins/build_facts.hpp"
+#include "simulation/parts.hpp"
 #include "world.hpp"
 
 namespace grit::python {
@@ -27,32 +31,38 @@ StateRequest state_of(const std::vector<std::string>& names) {
   return all;
 }
 
-/// `json`: whether `source` is a description, instead of the path of one.
+/// `json`: whether `source` is a description, instead of the path of one. `resumes`: whether resume() follows.
 std::unique_ptr<Driver> open(const std::string& source, bool json, unsigned threads, std::vector<std::string> sets,
                              std::vector<std::string> plugin_path, const std::vector<std::string>& state,
-                             std::optional<Checkpoint> checkpoint) {
-  const SimulationOptions options{.threads = threads,
-                                  .sets = std::move(sets),
-                                  .plugin_path = std::move(plugin_path),
-                                  .state = state_of(state),
-                                  .checkpoint = std::move(checkpoint)};
-  return std::make_unique<Driver>(json ? Simulation(Description::parse(source), options)
-                                       : Simulation::open(source, options));
+                             bool resumes) {
+  const SimulationOptions options{
+      .threads = threads, .sets = std::move(sets), .plugin_path = std::move(plugin_path), .state = state_of(state)};
+  return std::make_unique<Driver>(Simulation(json ? open_parts(Description::parse(source), options, resumes)
+                                                  : open_parts(std::filesystem::path(source), options, resumes)));
 }
 
 py::bytes bytes_of(const Checkpoint& checkpoint) {
   return {reinterpret_cast<const char*>(checkpoint.state.data()), checkpoint.state.size()};
 }
 
-py::tuple pickled(const Checkpoint& checkpoint) {
-  return py::make_tuple(checkpoint.stage, checkpoint.time, checkpoint.step, bytes_of(checkpoint));
+py::tuple pickled(const SavedState& saved) {
+  const Checkpoint& checkpoint = saved.checkpoint;
+  return py::make_tuple(checkpoint.stage, checkpoint.time, checkpoint.step, bytes_of(checkpoint), saved.facts->dump());
 }
 
-Checkpoint unpickled(const py::tuple& all) {
+SavedState unpickled(const py::tuple& all) {
+  if (all.size() != 5) throw Error("this checkpoint was pickled by another grit; run from the start");
   const auto state = all[3].cast<std::string_view>();
   const auto* const first = reinterpret_cast<const std::byte*>(state.data());
-  return {all[0].cast<std::string>(), all[1].cast<double>(), all[2].cast<std::uint64_t>(),
-          std::vector<std::byte>(first, first + state.size())};
+  return {{all[0].cast<std::string>(), all[1].cast<double>(), all[2].cast<std::uint64_t>(),
+           std::vector<std::byte>(first, first + state.size())},
+          std::make_shared<const Description>(Description::parse(all[4].cast<std::string>()))};
+}
+
+py::str text_of(const SavedState& saved) {
+  const Checkpoint& checkpoint = saved.checkpoint;
+  return py::str("<checkpoint: {:.6g} s, step {}, stage '{}', {:.3g} MB>")
+      .format(checkpoint.time, checkpoint.step, checkpoint.stage, 1e-6 * static_cast<double>(checkpoint.state.size()));
 }
 
 }  // namespace
@@ -65,11 +75,15 @@ PYBIND11_MODULE(_grit, module) {
   module.attr("version") = build_facts().version;
   module.attr("instruction_set") = build_facts().arch;
 
-  py::class_<Checkpoint>(module, "Checkpoint", "The complete state of a simulation. It can be pickled.")
-      .def_readonly("stage", &Checkpoint::stage, "name of the stage that was running")
-      .def_readonly("time", &Checkpoint::time, "simulated [s]")
-      .def_readonly("step", &Checkpoint::step, "since the start of the run")
-      .def("__len__", [](const Checkpoint& checkpoint) { return checkpoint.state.size(); })
+  py::class_<SavedState>(module, "Checkpoint", "The complete state of a simulation. It can be pickled.")
+      .def_property_readonly(
+          "stage", [](const SavedState& saved) { return saved.checkpoint.stage; }, "name of the stage that was running")
+      .def_property_readonly(
+          "time", [](const SavedState& saved) { return saved.checkpoint.time; }, "simulated [s]")
+      .def_property_readonly(
+          "step", [](const SavedState& saved) { return saved.checkpoint.step; }, "since the start of the run")
+      .def("__len__", [](const SavedState& saved) { return saved.checkpoint.state.size(); })
+      .def("__repr__", &text_of)
       .def(py::pickle(&pickled, &unpickled));
 
   py::class_<Forecast>(module, "Forecast", "Size and time step of a run, from its initial state.")
@@ -86,7 +100,7 @@ PYBIND11_MODULE(_grit, module) {
   py::class_<Driver> simulation(module, "Simulation");
   simulation
       .def(py::init(&open), py::arg("source"), py::arg("json"), py::arg("threads"), py::arg("sets"),
-           py::arg("plugin_path"), py::arg("state"), py::arg("checkpoint"), py::call_guard<py::gil_scoped_release>())
+           py::arg("plugin_path"), py::arg("state"), py::arg("resumes"), py::call_guard<py::gil_scoped_release>())
       .def("run",
            [](Driver& driver, const py::object& owner, std::optional<std::uint64_t> steps, std::optional<double> until,
               bool stage, bool progress) {
@@ -99,9 +113,7 @@ PYBIND11_MODULE(_grit, module) {
       .def("set", &Driver::set)
       .def("save", &Driver::save)
       .def("resume", &Driver::resume)
-      .def("write",
-           [](Driver& driver, const std::filesystem::path& path) { write(path, driver.simulation(), driver.save()); })
-      .def("read", [](Driver& driver, const std::filesystem::path& path) { return read(path, driver.simulation()); })
+      .def("write", [](Driver& driver, const std::filesystem::path& path) { write_saved(path, driver.save()); })
       .def("every_time", &Driver::every_time)
       .def("every_steps", &Driver::every_steps)
       .def("at_stage_end", &Driver::at_stage_end);
@@ -109,5 +121,7 @@ PYBIND11_MODULE(_grit, module) {
     return picture_of(driver.world(), view, color);
   });
   bind_world(simulation);
+  module.def("read_checkpoint", &read_saved);
+  module.def("is_unit", &is_unit);
   module.def("picture_of_run", [](const std::filesystem::path& folder) { return picture_of(folder); });
 }

@@ -181,6 +181,7 @@ void bind_world(py::class_<Driver>& simulation) {
       .def_property_readonly("dt", [](Driver& d) { return d.world().dt(); })
       .def_property_readonly("stage", [](Driver& d) { return d.world().stage(); })
       .def_property_readonly("done", &Driver::done)
+      .def_property_readonly("failed", &Driver::failed)
       .def_property_readonly("bodies", [](Driver& d) { return d.world().ids().size(); })
       .def_property_readonly("mean_diameter", [](Driver& d) { return d.world().mean_diameter(); })
       .def_property_readonly("solid_density", [](Driver& d) { return d.world().solid_density(); })

@@ -167,7 +167,7 @@ class Running(unittest.TestCase):
         sim = grit.Simulation(scene())
         sim.run(10)
         for arguments, error, said in (({"steps": 1, "until": 2}, TypeError, "one of steps and until"), ({"steps": -1}, ValueError, "found -1; allowed"),
-                                       ({"steps": 1.5}, TypeError, "float"), ({"until": "1 s"}, TypeError, "simulated time in seconds"),
+                                       ({"steps": 1.5}, TypeError, "found 1.5; allowed"), ({"until": "1 s"}, TypeError, "simulated time in seconds"),
                                        ({"until": float("nan")}, TypeError, "found nan"), ({"until": -1}, ValueError, "but the simulation is at")):
             with self.assertRaisesRegex(error, said):
                 sim.run(**arguments)

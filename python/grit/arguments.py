@@ -1,0 +1,131 @@
+"""Arguments of calls, checked and converted. Errors say what was found and what is allowed."""
+
+import json
+import math
+import numbers
+import operator
+import os
+from collections.abc import Mapping
+
+import numpy
+
+from .errors import DescriptionError, Problem
+
+_MOST_STEPS = 2**63 - 1
+
+
+def _refuse(name, value, allowed, error=TypeError):
+    found = repr(value) if isinstance(value, (bool, numbers.Number, str)) else f"a value of type {type(value).__name__}"
+    raise error(f"{name}: found {found}; allowed is {allowed}") from None
+
+
+def whole(name, value, least, most=math.inf):
+    """A whole number."""
+    allowed = f"a whole number from {least}" + (f" to {most}" if most < math.inf else "")
+    try:
+        number = operator.index(value)
+    except TypeError:
+        _refuse(name, value, allowed)
+    if isinstance(value, bool):
+        _refuse(name, value, allowed)
+    if not least <= number <= most:
+        _refuse(name, value, allowed, ValueError)
+    return min(number, _MOST_STEPS)
+
+
+def positive(name, value):
+    """A finite number above 0."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        _refuse(name, value, "a number above 0")
+    if not 0 < value < math.inf:
+        _refuse(name, value, "a finite number above 0", ValueError)
+    return float(value)
+
+
+def text(name, value, example):
+    """A text that is not empty."""
+    if not isinstance(value, str):
+        _refuse(name, value, f"a text such as {example!r}")
+    if not value:
+        _refuse(name, value, f"a text such as {example!r}", ValueError)
+    return value
+
+
+def path(name, value, allowed="the path of a file"):
+    """A path, as a text."""
+    if not isinstance(value, (str, os.PathLike)):
+        _refuse(name, value, allowed)
+    value = os.fsdecode(value)
+    if not value or "\0" in value:
+        _refuse(name, value, allowed, ValueError)
+    return value
+
+
+def several(name, value, allowed):
+    """What can be iterated over, as a list."""
+    try:
+        return list(value)
+    except TypeError:
+        _refuse(name, value, allowed)
+
+
+def folders(name, value):
+    """One path or several, as texts."""
+    allowed = "the path of a folder, or a list of them"
+    values = [value] if isinstance(value, (str, os.PathLike)) else several(name, value, allowed)
+    return [path(name, one, allowed) for one in values]
+
+
+def box(low, high):
+    """The corners of a box; None for none."""
+    if (low is None) != (high is None):
+        raise TypeError("give both low and high, or none for the specimen")
+    if low is None:
+        return None
+    corners = []
+    for name, corner in (("low", low), ("high", high)):
+        values = several(name, corner, "a list of three numbers")
+        if len(values) != 3 or not all(isinstance(one, numbers.Real) for one in values):
+            raise TypeError(f"{name}: found {values}; allowed is a list of three numbers")
+        corners.append([float(one) for one in values])
+    if not all(below < above for below, above in zip(*corners)):
+        raise ValueError(f"low, high: found {corners[0]} and {corners[1]}; allowed is a low corner below the high one along each axis")
+    return tuple(corners)
+
+
+def _plain(value, pointer, source):
+    def refuse(message):
+        raise DescriptionError(f"{source}: {pointer or '/'}: {message}", [Problem(source, None, pointer, message)])
+
+    if isinstance(value, Mapping):
+        return {_plain(str(key), pointer, source): _plain(one, f"{pointer}/{str(key).replace('~', '~0').replace('/', '~1')}", source) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(one, f"{pointer}/{i}", source) for i, one in enumerate(value)]
+    if isinstance(value, (numpy.ndarray, numpy.generic)):
+        return _plain(value.tolist(), pointer, source)
+    if isinstance(value, os.PathLike):
+        value = os.fsdecode(value)
+    if isinstance(value, str) and any("\ud800" <= character <= "\udfff" for character in value):
+        refuse(f"found the text {value!r}, which is not Unicode; allowed are texts that can be written as UTF-8")
+    if value is None or isinstance(value, (bool, int, str)) or (isinstance(value, float) and math.isfinite(value)):
+        return value
+    return refuse(f"found {value!r} of type {type(value).__name__}; allowed are dicts, lists, finite numbers, texts, True, False and None")
+
+
+def as_json(value, pointer="", source="description"):
+    """A value as JSON; numbers, arrays and paths of Python and numpy are converted. Raises DescriptionError."""
+    try:
+        return json.dumps(_plain(value, pointer, source))
+    except RecursionError:
+        message = "found a dict or a list that contains itself, or too many inside each other"
+        raise DescriptionError(f"{source}: {pointer or '/'}: {message}", [Problem(source, None, pointer, message)]) from None
+
+
+def assignments(sets):
+    """Changes of a description, as "/pointer=value"."""
+    if isinstance(sets, Mapping):
+        return [f"{text('sets', pointer, '/seed')}={as_json(value, pointer, 'sets')}" for pointer, value in sets.items()]
+    allowed = 'a dict {"/pointer": value}, or a list of "/pointer=value"'
+    if isinstance(sets, str):
+        raise TypeError(f"sets: found a text; allowed is {allowed}")
+    return [text("sets", one, "/seed=3") for one in several("sets", sets, allowed)]
