@@ -39,7 +39,8 @@ Description with_sets(Description unexpanded, const std::vector<std::string>& se
 Description grit_facts() {
   const auto& build = build_facts();
   return {{"version", build.version},       {"revision", build.revision}, {"compiler", build.compiler},
-          {"build_type", build.build_type}, {"arch", build.arch},         {"instruction_set", build.instruction_set}};
+          {"build_type", build.build_type}, {"flags", build.flags},       {"libraries", build.libraries},
+          {"sdk_version", sdk_version},     {"arch", build.arch},         {"instruction_set", build.instruction_set}};
 }
 
 Description plugin_facts(const PluginUsed& used) {
