@@ -1,5 +1,5 @@
 # Installation: <prefix>/lib/grit/<arch> with the library, the program and, by GritPlugin.cmake, the plugins; the launcher as
-# <prefix>/bin/grit; the SDK's headers, its CMake package and the pages for plugin authors. Builds for several instruction sets
+# <prefix>/bin/grit; its manual pages and completions; the SDK's headers, its CMake package and the pages for plugin authors. Builds for several instruction sets
 # can share a prefix: only this folder and the targets of the package are separate. The package is also written to the build
 # folder, for plugins that are built against it.
 include(CMakePackageConfigHelpers)
@@ -19,6 +19,9 @@ if(TARGET grit_app)
   set_target_properties(grit_app PROPERTIES INSTALL_RPATH "$ORIGIN")
   install(TARGETS grit_app RUNTIME DESTINATION ${own})
   install(TARGETS grit_launcher RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/man/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+  install(FILES core/src/app/completion/grit.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME grit)
+  install(FILES core/src/app/completion/_grit DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 endif()
 
 file(REMOVE_RECURSE ${build_package})  # removes targets of an earlier GRIT_ARCH

@@ -2,7 +2,8 @@
 # Installs the dependencies of grit on Debian 12. Needs root or sudo only if something is missing; can be run again.
 #   install-deps.sh [--run | --viewers | --sanitizers | --site]
 #     --run         only what building and running grit needs: no libraries for tests and benchmarks
-#     --viewers     also Chromium and ParaView (1 GB), in which some tests open results as users do, and Doxygen
+#     --viewers     also Chromium and ParaView (1 GB), in which some tests open results as users do, Doxygen, and what
+#                   checks completion in zsh, manual pages and packages
 #     --site        only what scripts/site.sh needs: Sphinx, its theme and Doxygen
 #     --sanitizers  also what scripts/sanitize.sh and scripts/fuzz.sh need: sanitizers, libFuzzer, names of functions in reports, valgrind
 set -euo pipefail
@@ -26,9 +27,10 @@ for_tests=(
   libgtest-dev libgmock-dev libbenchmark-dev
   libvalijson-dev
   librsvg2-bin                       # pictures as PNG
+  groff-base                         # manual pages
   python3 python3-h5py               # tests of vector instructions and of the documentation
 )
-viewers=(chromium paraview python3-paraview xvfb doxygen)
+viewers=(chromium paraview python3-paraview xvfb doxygen zsh mandoc lintian)
 site=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton doxygen doxygen-awesome-css)
 sanitizers=(libclang-rt-16-dev llvm-16 valgrind)
 case ${1-} in

@@ -11,12 +11,14 @@ namespace grit {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-const std::vector<std::string> all_commands{"run", "check", "expand", "schema", "plugins", "describe"};
+const std::vector<std::string> all_commands{"run",   "check",     "expand", "schema", "plugins", "describe",
+                                            "study", "calibrate", "advise", "report", "manual"};
 
 std::size_t widest_line(const std::string& text) {
   std::size_t widest = 0;
@@ -76,6 +78,11 @@ TEST(Usage, VersionSaysWhatWasBuilt) {
   const auto version = grit_in(folder.path(), {"--version"});
   EXPECT_EQ(version.status, 0);
   EXPECT_THAT(version.out, StartsWith("grit " GRIT_VERSION));
+  EXPECT_THAT(version.out, AllOf(HasSubstr("\ncompiler flags: -march=" GRIT_ARCH " "), HasSubstr("-ffp-contract=")));
+  EXPECT_THAT(version.out,
+              ContainsRegex("\nlibraries: Boost 1\\.[0-9.]+, Eigen [0-9.]+, fmt [0-9.]+, HDF5 1\\.[0-9.]+, "
+                            "nlohmann_json [0-9.]+, spdlog [0-9.]+, zlib [0-9.]+\n"));
+  EXPECT_THAT(version.out, ContainsRegex("\nplugin interface \\(SDK\\): version [0-9]+\n$"));
 }
 
 TEST(Usage, AnInstructionSetThatIsNotTheBuildsOwnIsRefused) {

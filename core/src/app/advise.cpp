@@ -324,17 +324,18 @@ void print(const EvaluatedStudy& study, const std::string& related, const Asked&
 
 }  // namespace
 
-ExitStatus advise_command(const std::vector<std::string>& words) {
+void advise_options(Options& options) {
   namespace po = boost::program_options;
-  Options options(command("advise"));
   options.add()("tolerance", po::value<std::string>()->default_value("5%")->value_name("FRACTION"),
                 "allowed error, e.g. 2% or 0.02")(
       "study", po::value<std::vector<std::string>>()->composing()->value_name("FILE"),
       "study.json of a study; may be repeated; default: installed studies of the same scenario, or of a scene with the "
-      "same components")("metric", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
+      "same components")("metric", po::value<std::vector<std::string>>()->composing()->value_name("METRIC"),
                          "metric to keep within the tolerance; may be repeated; default: all metrics of the study");
   options.add_set();
-  if (!options.read(words)) return ExitStatus::done;
+}
+
+ExitStatus advise_command(const Options& options) {
   const std::string file = options.only_word("description");
   const double tolerance = fraction_of(options.get<std::string>("tolerance"));
   const auto registry = options.registry();

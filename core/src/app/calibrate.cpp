@@ -145,10 +145,8 @@ CalibrationPlace place_of(const std::filesystem::path& file, const Options& opti
 
 }  // namespace
 
-ExitStatus calibrate_command(const std::vector<std::string>& words) {
+void calibrate_options(Options& options) {
   namespace po = boost::program_options;
-  outlive_readers();
-  Options options(command("calibrate"));
   options.add()("out", po::value<std::string>()->value_name("DIR"),
                 "folder of runs and results; default: results/NAME")(
       "jobs", po::value<std::string>()->value_name("N"), "concurrent runs; default: runs_at_once of the file")(
@@ -156,7 +154,10 @@ ExitStatus calibrate_command(const std::vector<std::string>& words) {
       "dry-run", "print the number of runs and their time, and exit")(
       "overwrite", "remove the trials of another calibration in the folder")("quiet,q",
                                                                              "print results only, no progress");
-  if (!options.read(words)) return ExitStatus::done;
+}
+
+ExitStatus calibrate_command(const Options& options) {
+  outlive_readers();
   const std::filesystem::path file = options.only_word("calibration");
   options.warn_of_threads();
   const auto registry = options.registry();

@@ -243,11 +243,12 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
 
 }  // namespace
 
-ExitStatus check_command(const std::vector<std::string>& words) {
-  Options options(command("check"));
+void check_options(Options& options) {
   options.add_threads("threads assumed in the estimate of the run time");
   options.add_set();
-  if (!options.read(words)) return ExitStatus::done;
+}
+
+ExitStatus check_command(const Options& options) {
   if (options.words().empty()) throw UsageError("no description given; see 'grit check --help'");
   options.warn_of_threads();
   const auto registry = options.registry();

@@ -86,9 +86,17 @@ void print_names(const Parameters& all, const Registry& registry) {
 
 }  // namespace
 
-ExitStatus describe_command(const std::vector<std::string>& words) {
-  Options options(command("describe"));
-  if (!options.read(words)) return ExitStatus::done;
+std::vector<std::pair<std::string, std::string>> described_sections(const Registry& registry) {
+  SceneDescription scene(registry);
+  Parameters all;
+  scene.declare(all);
+  std::vector<std::pair<std::string, std::string>> sections{{"study", "file of 'grit study'"},
+                                                            {"calibration", "file of 'grit calibrate'"}};
+  for (const Parameter& section : all.entries()) sections.emplace_back(section.name(), section.doc());
+  return sections;
+}
+
+ExitStatus describe_command(const Options& options) {
   const auto registry = options.registry();
   SceneDescription scene(*registry);
   Parameters all;
@@ -106,8 +114,8 @@ ExitStatus describe_command(const std::vector<std::string>& words) {
     std::cout << (name == "study" ? file_text<StudyDescription>() : file_text<CalibrationDescription>());
     return ExitStatus::done;
   }
-  std::vector<std::string> names{"study", "calibration"};
-  for (const Parameter& section : all.entries()) names.push_back(section.name());
+  std::vector<std::string> names;
+  for (const auto& [section, _] : described_sections(*registry)) names.push_back(section);
   for (const Installed& one : registry->installed()) {
     if (one.name == name) {
       std::cout << component_text(*registry, name, false);

@@ -19,10 +19,9 @@ void name_files(Description& plain, const Description& whole) {
 
 }  // namespace
 
-ExitStatus expand_command(const std::vector<std::string>& words) {
-  Options options(command("expand"));
-  options.add_set();
-  if (!options.read(words)) return ExitStatus::done;
+void expand_options(Options& options) { options.add_set(); }
+
+ExitStatus expand_command(const Options& options) {
   const std::string file = options.only_word("description");
   const auto registry = options.registry();
   const Document document = load_document(file, options.list("set"), *registry);

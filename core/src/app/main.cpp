@@ -2,71 +2,52 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 
 #include "app/command.hpp"
+#include "app/completion.hpp"
 #include "app/early_exit.hpp"
 #include "app/interrupt.hpp"
+#include "app/options.hpp"
 #include "format/message.hpp"
 #include "format/resources.hpp"
 #include "format/utf8.hpp"
+#include "grit/build_tag.hpp"
 #include "grit/error.hpp"
-#include "grit/toolkit/did_you_mean.hpp"
 #include "grit/toolkit/text_file.hpp"
 #include "plugins/build_facts.hpp"
 
 namespace grit {
-
-std::span<const Command> commands() {
-  static constexpr std::array<Command, 10> all{{
-      {"run", "FILE…", "Run descriptions, one after the other. Ctrl-C saves the results and stops.", run_command},
-      {"check", "FILE…", "Validate a description; report time step, memory, frames and run time.", check_command},
-      {"expand", "FILE", "Print a description with inheritance, --set and scenario resolved.", expand_command},
-      {"schema", "", "Print the JSON Schema of descriptions, for editors.", schema_command},
-      {"plugins", "[NAME]", "List the installed components, or one in detail.", plugins_command},
-      {"describe", "[NAME]", "Print the parameters of a section of a description, or of a component.",
-       describe_command},
-      {"study", "STUDY", "Run a sweep, or a study of speed against accuracy; plot its metrics.", study_command},
-      {"calibrate", "FILE", "Find parameters for which runs meet targets, with their errors.", calibrate_command},
-      {"advise", "FILE", "Suggest cheaper settings within a tolerance, from the results of a study.", advise_command},
-      {"report", "DIR…", "Write a page with curves and grains of one run, or of several side by side.", report_command},
-  }};
-  return all;
-}
-
 namespace {
 
-const Command& named(const std::string& name) {
-  std::vector<std::string> names;
-  for (const Command& c : commands()) {
-    if (name == c.name) return c;
-    names.emplace_back(c.name);
-  }
-  throw UsageError((name.starts_with('-') ? "unknown option \"" : "unknown command \"") + name + '"' +
-                   did_you_mean(name, names, "see 'grit --help'"));
-}
-
 void print_usage(std::ostream& out) {
-  out << "grit, discrete element method for sand, shear zones and silos\n\nusage: grit COMMAND [options]\n\n";
+  out << "grit, " << about_grit << "\n\nusage: grit COMMAND [options]\n\n";
   for (const Command& c : commands()) {
     const std::string head = std::string("  ") + c.name + ' ' + c.synopsis;
     const auto width = static_cast<std::size_t>(std::ranges::count_if(head, [](char b) { return (b & 0xC0) != 0x80; }));
     out << head << std::string(20 - width, ' ') << c.doc << '\n';
   }
-  out << "\n'grit COMMAND --help' prints the options of a command, 'grit --version' the version and build.\n"
-         "GRIT_ISA selects an installed instruction set; GRIT_PLUGIN_PATH adds plugin folders.\n"
-         "Exit status: 0 done, 1 usage, 2 description, 3 plugin, 4 numerics, 5 files or disk,\n"
-         "70 defect of the program, 130 interrupted and saved.\n";
+  out << "\n'grit COMMAND --help' prints the options of a command, 'grit --version' the version and build.\n";
+  for (std::size_t i = 0; i < environment().size(); ++i)
+    out << (i > 0 ? "; " : "") << environment()[i].name << ' ' << environment()[i].doc;
+  out << ".\nExit status: ";
+  for (const auto& [status, name, doc] : exit_statuses) {
+    if (status == ExitStatus::defect) out << ",\n";
+    else if (status != ExitStatus::done) out << ", ";
+    out << static_cast<int>(status) << ' ' << name;
+  }
+  out << ".\n";
 }
 
 void print_version() {
   const BuildFacts& build = build_facts();
   std::cout << "grit " << build.version << (*build.revision == 0 ? "" : " (") << build.revision
             << (*build.revision == 0 ? "" : ")") << ", " << build.compiler << ", " << build.build_type << ", "
-            << build.instruction_set << " (-march=" << build.arch << ")\n";
+            << build.instruction_set << " (-march=" << build.arch << ")\n"
+            << "compiler flags: " << build.flags << "\nlibraries: " << build.libraries
+            << "\nplugin interface (SDK): version " << sdk_version << '\n';
 }
 
 /// The launcher selects among installed builds. A single build must refuse a GRIT_ISA other than its own.
@@ -91,6 +72,11 @@ void check_encoding(const std::vector<std::string>& words) {
                     ": the name of the working folder is not UTF-8; rename it, or work in another");
 }
 
+ExitStatus run(const Command& command, const std::vector<std::string>& words) {
+  Options options(command);
+  return options.read(words) ? command.main(options) : ExitStatus::done;
+}
+
 ExitStatus main(const std::vector<std::string>& words) {
   check_instruction_set();
   check_encoding(words);
@@ -99,8 +85,12 @@ ExitStatus main(const std::vector<std::string>& words) {
     return ExitStatus::usage;
   }
   const std::string& first = words[0];
+  if (first == "--complete") {
+    print_candidates({words.begin() + 1, words.end()}, std::cout);
+    return ExitStatus::done;
+  }
   if (first == "--help" || first == "-h" || first == "help") {
-    if (words.size() > 1) return named(words[1]).main({"--help"});
+    if (words.size() > 1) return run(command(words[1]), {"--help"});
     print_usage(std::cout);
     return ExitStatus::done;
   }
@@ -108,7 +98,7 @@ ExitStatus main(const std::vector<std::string>& words) {
     print_version();
     return ExitStatus::done;
   }
-  return named(first).main({words.begin() + 1, words.end()});
+  return run(command(first), {words.begin() + 1, words.end()});
 }
 
 }  // namespace

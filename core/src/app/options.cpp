@@ -4,6 +4,7 @@
 #include <charconv>
 #include <filesystem>
 #include <iostream>
+#include <sstream>
 #include <system_error>
 #include <thread>
 
@@ -12,10 +13,43 @@
 
 namespace grit {
 namespace po = boost::program_options;
+namespace {
+
+/// In lines as wide as those of the options.
+std::string wrapped(const std::string& text) {
+  std::string lines;
+  std::istringstream words(text);
+  std::size_t width = 0;
+  for (std::string word; words >> word; width += word.size() + 1) {
+    if (const bool full = width + word.size() > po::options_description::m_default_line_length; full || width == 0) {
+      lines += full ? "\n" : "";
+      width = 0;
+    } else {
+      lines += ' ';
+    }
+    lines += word;
+  }
+  return lines + '\n';
+}
+
+}  // namespace
 
 Options::Options(const Command& command) : command_(command) {
   visible_.add_options()("plugin-path", po::value<std::vector<std::string>>()->composing()->value_name("DIR"),
                          "search for plugins here too; may be repeated")("help,h", "print this help and exit");
+  command.options(*this);
+}
+
+std::string Options::value_name(const po::option_description& option) {
+  if (option.semantic()->max_tokens() == 0) return "";
+  const std::string text = option.format_parameter();  // with the default: "N (=1)"
+  return text.substr(0, text.find(" (="));
+}
+
+std::string Options::default_text(const po::option_description& option) {
+  const std::string text = option.format_parameter();
+  const auto begin = text.find(" (=");
+  return begin == std::string::npos ? "" : " Default: " + text.substr(begin + 3, text.size() - begin - 4) + '.';
 }
 
 void Options::add_set() {
@@ -26,7 +60,8 @@ void Options::add_set() {
 
 void Options::add_threads(const char* doc) {
   const unsigned all = std::max(1u, std::thread::hardware_concurrency());
-  visible_.add_options()("threads", po::value<std::string>()->default_value(std::to_string(all))->value_name("N"), doc);
+  visible_.add_options()(
+      "threads", po::value<std::string>()->default_value(std::to_string(all), "all cores")->value_name("N"), doc);
 }
 
 unsigned Options::number(const char* name) const {
@@ -39,6 +74,7 @@ unsigned Options::number(const char* name) const {
 }
 
 bool Options::read(const std::vector<std::string>& words) {
+  command_line_ = words;
   po::options_description all;
   all.add(visible_).add_options()("words", po::value<std::vector<std::string>>());
   po::positional_options_description positional;
@@ -68,7 +104,8 @@ bool Options::read(const std::vector<std::string>& words) {
   if (!has("help")) return true;
   std::cout << "grit " << command_.name << ' ' << command_.synopsis << (*command_.synopsis == 0 ? "" : " ")
             << "[options]\n\n"
-            << command_.doc << "\n\n"
+            << command_.doc << '\n'
+            << wrapped(command_.text) << '\n'
             << visible_;
   return false;
 }
@@ -99,12 +136,6 @@ std::unique_ptr<Registry> Options::registry() const {
       throw UsageError("--plugin-path takes a folder of plugins, not \"" + folder + "\", " + fault);
   }
   return standard_registry(folders);
-}
-
-const Command& command(const std::string& name) {
-  const auto found =
-      std::find_if(commands().begin(), commands().end(), [&](const Command& c) { return c.name == name; });
-  return *found;
 }
 
 }  // namespace grit

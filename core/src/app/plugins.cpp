@@ -8,9 +8,7 @@
 
 namespace grit {
 
-ExitStatus plugins_command(const std::vector<std::string>& words) {
-  Options options(command("plugins"));
-  if (!options.read(words)) return ExitStatus::done;
+ExitStatus plugins_command(const Options& options) {
   const auto registry = options.registry();
   if (!options.words().empty()) {
     std::cout << component_text(*registry, options.only_word("name"), true);

@@ -107,16 +107,17 @@ ExitStatus make_page(const std::vector<std::filesystem::path>& folders, std::opt
 
 }  // namespace
 
-ExitStatus report_command(const std::vector<std::string>& words) {
+void report_options(Options& options) {
   namespace po = boost::program_options;
-  Options options(command("report"));
-  options.add()("out", po::value<std::string>()->value_name("FILE"),
+  options.add()("out", po::value<std::string>()->value_name("PAGE"),
                 "file of the page; default: report.html in the first folder that holds a run")(
       "png",
       "write pictures into each folder instead of a page: curves.png, profiles-PROBE.png, directions-PROBE.png, "
       "grains.png, layers.png, force-chains.png, linear-chains.png and map-PROBE-FIELD.png, each also as SVG; "
       "for several folders also curves-overlaid.png in the first that holds a run");
-  if (!options.read(words)) return ExitStatus::done;
+}
+
+ExitStatus report_command(const Options& options) {
   if (options.words().empty()) throw UsageError("no folder of results was given; see 'grit report --help'");
   if (options.has("png") && options.has("out")) throw UsageError("--png writes into the folders of results, not --out");
   const std::vector<std::filesystem::path> folders(options.words().begin(), options.words().end());

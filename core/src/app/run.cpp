@@ -267,10 +267,8 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
 
 }  // namespace
 
-ExitStatus run_command(const std::vector<std::string>& words) {
+void run_options(Options& options) {
   namespace po = boost::program_options;
-  outlive_readers();
-  Options options(command("run"));
   options.add()("out", po::value<std::string>()->value_name("DIR"),
                 "folder of the results; for several descriptions, a folder in it for each; default: results/NAME")(
       "overwrite", "replace existing results")(
@@ -281,7 +279,10 @@ ExitStatus run_command(const std::vector<std::string>& words) {
       "port", po::value<std::string>()->value_name("N"), "port of --watch; default: a free one");
   options.add_threads("number of threads; the results have the same bits for any number");
   options.add_set();
-  if (!options.read(words)) return ExitStatus::done;
+}
+
+ExitStatus run_command(const Options& options) {
+  outlive_readers();
   if (options.words().empty()) throw UsageError("no description given; see 'grit run --help'");
   options.warn_of_threads();
   if (options.has("resume") && options.has("overwrite"))
@@ -291,7 +292,7 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   const auto listener = listener_of(options);
   if (listener) std::cerr << "watch: http://127.0.0.1:" << listener->port() << "/ during the run" << std::endl;
   std::vector<std::string> command_line{program_invocation_name, "run"};
-  command_line.insert(command_line.end(), words.begin(), words.end());
+  command_line.insert(command_line.end(), options.command_line().begin(), options.command_line().end());
   ExitStatus status = ExitStatus::done;
   for (const RunJob& job : jobs) {
     const ExitStatus one = report([&] {

@@ -6,9 +6,7 @@
 
 namespace grit {
 
-ExitStatus schema_command(const std::vector<std::string>& words) {
-  Options options(command("schema"));
-  if (!options.read(words)) return ExitStatus::done;
+ExitStatus schema_command(const Options& options) {
   if (!options.words().empty())
     throw UsageError("'grit schema' takes no arguments; it prints the schema of all descriptions");
   std::cout << scene_schema(*options.registry()).dump(2) << '\n';

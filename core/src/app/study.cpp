@@ -233,20 +233,21 @@ ExitStatus do_in_parallel(const StudyPlace& place, const std::vector<StudyRun>& 
 
 }  // namespace
 
-ExitStatus study_command(const std::vector<std::string>& words) {
+void study_options(Options& options) {
   namespace po = boost::program_options;
-  outlive_readers();
-  Options options(command("study"));
   const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
   options.add()("out", po::value<std::string>()->value_name("DIR"),
                 "folder of runs and results; default: results/NAME")(
-      "jobs", po::value<std::string>()->default_value(std::to_string(cores))->value_name("N"), "concurrent runs")(
-      "threads", po::value<std::string>()->default_value("1")->value_name("N"), "threads per run")(
+      "jobs", po::value<std::string>()->default_value(std::to_string(cores), "all cores")->value_name("N"),
+      "concurrent runs")("threads", po::value<std::string>()->default_value("1")->value_name("N"), "threads per run")(
       "dry-run", "list the missing runs and exit")(
       "collect", "evaluate existing runs of any revision of grit, also while others go on; start no runs")(
       "quiet,q", "print results only, no progress");
   add_submit_options(options);
-  if (!options.read(words)) return ExitStatus::done;
+}
+
+ExitStatus study_command(const Options& options) {
+  outlive_readers();
   const std::filesystem::path file = options.only_word("study");
   if (options.has("dry-run") && options.has("collect"))
     throw UsageError("--dry-run lists the missing runs, --collect starts none; give one of them");

@@ -88,12 +88,13 @@ void expect_gnu_parallel(const fs::path& program, const fs::path& log) {
 
 void add_submit_options(Options& options) {
   namespace po = boost::program_options;
-  options.add()("submit", po::value<std::string>()->value_name("HOW"),
-                "do the missing runs by a scheduler: 'slurm', as one job array; 'parallel', by GNU parallel. With "
-                "--dry-run only its script is written")(
+  options.add()(
+      "submit", po::value<std::string>()->value_name("slurm|parallel"),
+      "do the missing runs by a scheduler: as one job array of Slurm, or by GNU parallel. With --dry-run only "
+      "its script is written")(
       "sbatch", po::value<std::vector<std::string>>()->composing()->value_name("OPTIONS"),
       "options for sbatch, such as --sbatch='--partition=long --account=soil'; they replace those of grit; may be "
-      "repeated")("hosts", po::value<std::string>()->value_name("FILE|LIST"),
+      "repeated")("hosts", po::value<std::string>()->value_name("HOSTS"),
                   "hosts for GNU parallel, which share the folder of results: a file with one a line, or a list with "
                   "commas")("only", po::value<std::string>()->value_name("RUN"),
                             "do one run, or continue it, and evaluate nothing: its folder, such as runs/usual/seed-1");
