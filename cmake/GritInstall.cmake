@@ -1,6 +1,6 @@
 # Installation: <prefix>/lib/grit/<arch> with the library, the program and, by GritPlugin.cmake, the plugins; the launcher as
-# <prefix>/bin/grit; its manual pages and completions; the SDK's headers, its CMake package and the pages for plugin authors. Builds for several instruction sets
-# can share a prefix: only this folder and the targets of the package are separate. The package is also written to the build
+# <prefix>/bin/grit; its manual pages and completions; the SDK headers, its CMake package and the documentation. Builds for several
+# instruction sets can share a prefix: only this folder and the targets of the package are separate. The package is also written to the build
 # folder, for plugins that are built against it.
 include(CMakePackageConfigHelpers)
 set(own ${CMAKE_INSTALL_LIBDIR}/grit/${GRIT_ARCH})
@@ -10,11 +10,15 @@ set(build_package ${PROJECT_BINARY_DIR}/lib/cmake/grit)
 set_target_properties(grit_sdk PROPERTIES EXPORT_NAME sdk)
 install(TARGETS grit grit_sdk EXPORT grit LIBRARY DESTINATION ${own})
 install(DIRECTORY ${PROJECT_BINARY_DIR}/lib/grit/studies DESTINATION ${own} OPTIONAL)
-install(DIRECTORY python/grit DESTINATION ${CMAKE_INSTALL_DATADIR}/grit/python FILES_MATCHING PATTERN *.py)
-install(DIRECTORY python/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/grit/python FILES_MATCHING PATTERN *.py)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/grit)
-install(DIRECTORY docs/plugins DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/grit FILES_MATCHING PATTERN *.md)
-install(DIRECTORY core/include/grit DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
+install(DIRECTORY python/grit DESTINATION ${GRIT_PYTHON_DIR} COMPONENT python3-grit FILES_MATCHING PATTERN *.py)
+install(DIRECTORY core/include/grit DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT grit-dev FILES_MATCHING PATTERN *.hpp)
+# In the places that they have here, so that links between pages hold.
+set(documentation ${CMAKE_INSTALL_DATADIR}/doc/grit)
+install(FILES LICENSE DESTINATION ${documentation} COMPONENT licence)  # packages have it in their file copyright
+install(FILES README.md CONTRIBUTING.md CHANGELOG.md CITATION.cff DESTINATION ${documentation} COMPONENT grit-doc)
+install(DIRECTORY docs sims DESTINATION ${documentation} COMPONENT grit-doc PATTERN Doxyfile EXCLUDE)
+install(DIRECTORY plugins bench DESTINATION ${documentation} COMPONENT grit-doc FILES_MATCHING PATTERN *.md)
+install(DIRECTORY python/examples DESTINATION ${documentation}/python COMPONENT grit-doc FILES_MATCHING PATTERN *.py)
 if(TARGET grit_app)
   set_target_properties(grit_app PROPERTIES INSTALL_RPATH "$ORIGIN")
   install(TARGETS grit_app RUNTIME DESTINATION ${own})
@@ -36,9 +40,9 @@ foreach(contract ${contracts})
   cmake_path(GET contract FILENAME file)
   configure_file(${contract} ${build_package}/testing/${file} COPYONLY)
 endforeach()
-install(FILES ${contracts} DESTINATION ${package}/testing)
+install(FILES ${contracts} DESTINATION ${package}/testing COMPONENT grit-dev)
 install(FILES cmake/grit-config.cmake cmake/GritPlugin.cmake ${build_package}/grit-config-version.cmake
-        DESTINATION ${package})
-install(FILES ${build_package}/${GRIT_ARCH}/grit-compiler.cmake DESTINATION ${package}/${GRIT_ARCH})
-install(EXPORT grit NAMESPACE grit:: FILE grit-targets.cmake DESTINATION ${package}/${GRIT_ARCH})
+        DESTINATION ${package} COMPONENT grit-dev)
+install(FILES ${build_package}/${GRIT_ARCH}/grit-compiler.cmake DESTINATION ${package}/${GRIT_ARCH} COMPONENT grit-dev)
+install(EXPORT grit NAMESPACE grit:: FILE grit-targets.cmake DESTINATION ${package}/${GRIT_ARCH} COMPONENT grit-dev)
 export(EXPORT grit NAMESPACE grit:: FILE ${build_package}/${GRIT_ARCH}/grit-targets.cmake)

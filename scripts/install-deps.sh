@@ -28,6 +28,7 @@ for_tests=(
   libvalijson-dev
   librsvg2-bin                       # pictures as PNG
   groff-base                         # manual pages
+  dpkg-dev file                      # Debian packages
   python3 python3-h5py               # tests of vector instructions and of the documentation
 )
 viewers=(chromium paraview python3-paraview xvfb doxygen zsh mandoc lintian)
