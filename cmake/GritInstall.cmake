@@ -1,7 +1,7 @@
 # Installation: <prefix>/lib/grit/<arch> with the library, the program and, by GritPlugin.cmake, the plugins; the launcher as
-# <prefix>/bin/grit; its manual pages and completions; the SDK headers, its CMake package and the documentation. Builds for several
-# instruction sets can share a prefix: only this folder and the targets of the package are separate. The package is also written to the build
-# folder, for plugins that are built against it.
+# <prefix>/bin/grit; its manual pages and completions; the SDK headers, its CMake package and the documentation. Builds for
+# several instruction sets can share a prefix: only this folder and the targets of the package are separate. The package is
+# also written to the build folder, for plugins that are built against it.
 include(CMakePackageConfigHelpers)
 set(own ${CMAKE_INSTALL_LIBDIR}/grit/${GRIT_ARCH})
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/grit)
