@@ -35,6 +35,7 @@ void study_options(Options& options);
 void calibrate_options(Options& options);
 void advise_options(Options& options);
 void report_options(Options& options);
+void new_options(Options& options);
 void manual_options(Options& options);
 
 ExitStatus run_command(const Options& options);
@@ -47,6 +48,7 @@ ExitStatus study_command(const Options& options);
 ExitStatus calibrate_command(const Options& options);
 ExitStatus advise_command(const Options& options);
 ExitStatus report_command(const Options& options);
+ExitStatus new_command(const Options& options);
 ExitStatus manual_command(const Options& options);
 
 std::span<const Command> commands();

@@ -14,7 +14,7 @@ void no_options(Options& /*options*/) {}
 }  // namespace
 
 std::span<const Command> commands() {
-  static constexpr std::array<Command, 11> all{{
+  static constexpr std::array<Command, 12> all{{
       {"run", "FILE…", "Run descriptions, one after the other. Ctrl-C saves the results and stops.",
        "Each run writes a folder of results, results/NAME for NAME.json. Existing results are kept unless --overwrite "
        "or --resume is given.",
@@ -41,6 +41,11 @@ std::span<const Command> commands() {
        "The results are those of 'grit study', installed or given by --study.", advise_options, advise_command},
       {"report", "RESULTS…", "Write a page with curves and grains of one run, or of several side by side.",
        "RESULTS are folders that 'grit run' wrote.", report_options, report_command},
+      {"new", "KIND OWN", "Write a plugin of your own, with its test, from the example of the guide.",
+       "KIND is contact, geometry, probe, engine, scenario or body. The folder has the code, a test, a scene that uses "
+       "it, "
+       "and a README with the commands that build, test and run it.",
+       new_options, new_command},
       {"manual", "[COMMAND]", "Print the manual page of grit, or of a command, for 'man -l -'.",
        "The pages have the texts of --help.", manual_options, manual_command},
   }};

@@ -7,6 +7,7 @@
 
 #include "app/options.hpp"
 #include "app/reference.hpp"
+#include "plugins/kind.hpp"
 #include "simulation/standard_registry.hpp"
 
 namespace grit {
@@ -66,6 +67,8 @@ class Candidates {
     if (name == "RESULTS") out_ << ":results\n";
     if (name == "PLUGIN" || name == "NAME") print_components(name == "NAME");
     if (name == "COMMAND") print_commands();
+    if (name == "KIND")
+      for (const Kind& kind : kinds) print(kind.name, "");
     if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyz|") != std::string::npos) return;
     std::istringstream words(name);
     for (std::string word; std::getline(words, word, '|');) print(word, "");
@@ -91,12 +94,14 @@ class Candidates {
   std::ostream& out_;
 };
 
-/// The name of what a command takes, without "…" and brackets; "" if it takes no more.
+/// The name of what a command takes next, without "…" and brackets; "" if it takes no more.
 std::string next_name(const std::string& synopsis, std::size_t before) {
-  const bool several = synopsis.ends_with("…");
-  if (before > 0 && !several) return "";
-  const auto begin = synopsis.find_first_not_of('[');
-  return begin == std::string::npos ? "" : synopsis.substr(begin, synopsis.find_first_of("]\xE2", begin) - begin);
+  std::istringstream names(synopsis);
+  std::string name;
+  for (std::size_t i = 0; i <= before && !name.ends_with("…"); ++i)
+    if (!(names >> name)) return "";
+  const auto begin = name.find_first_not_of('[');
+  return begin == std::string::npos ? "" : name.substr(begin, name.find_first_of("]\xE2", begin) - begin);
 }
 
 }  // namespace

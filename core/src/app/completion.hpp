@@ -14,6 +14,7 @@ namespace grit {
 ///   PAGE            an HTML file           RESULTS    a folder of results
 ///   HOSTS           any file               COMMAND    a command
 ///   PLUGIN          a component            NAME       a component, or a section of descriptions
+///   KIND            a kind of plugin
 ///   one|other       these words
 /// Others, such as numbers, have no candidates.
 void print_candidates(const std::vector<std::string>& words, std::ostream& out);
