@@ -25,8 +25,9 @@ namespace grit {
 /// How a simulation is opened.
 struct SimulationOptions {
   unsigned threads = 1;           ///< results are identical for any number
-  std::vector<std::string> sets;  ///< changes of the description, "/pointer=value", in order
-  /// Folders searched for plugins, before those of GRIT_PLUGIN_PATH and those next to the library.
+  std::vector<std::string> sets;  ///< changes of the description, "/pointer=value", in order; file of problems: "sets"
+  /// Folders searched for plugins, before those of GRIT_PLUGIN_PATH and those next to the library. FileError is thrown
+  /// for one that has none.
   std::vector<std::string> plugin_path;
   /// State of bodies that World then has, also if no component requests it.
   StateRequest state = {};
