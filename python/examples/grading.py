@@ -17,7 +17,7 @@ sim = grit.Simulation({
         "sizes": {"type": "sieve", "diameters": sieves, "passing": passing}}}},
     "engines": {"damping": {"type": "local-damping", "coefficient": 0.2}},
     "stages": [{"name": "compress", "limit": "1 s", "until": {"type": "stress", "component": "zz", "value": "10 kPa", "within": 0.05}}],
-}, threads=2)
+})
 sim.run()
 diameters, mass = 2 * sim.bodies.radius, sim.bodies.mass
 found = numpy.array([mass[diameters <= sieve].sum() for sieve in sieves]) / mass.sum()

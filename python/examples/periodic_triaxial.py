@@ -22,7 +22,7 @@ sim = grit.Simulation({
             "materials": {"sand": {"friction_angle": "27 deg"}},
             "domain": {"servo": {"stress": {"zz": None}}, "strain_rate": [0, 0, "-2 1/s"]}}},
     ],
-}, threads=2)
+})
 sim.run_stage()
 dense = sim.void_ratio()
 

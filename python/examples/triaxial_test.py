@@ -37,7 +37,7 @@ sim = grit.Simulation({
             "materials": {"sand": {"friction_angle": "27 deg"}},
             "walls": {"bottom": driven(rate * side / 2), "top": driven(-rate * side / 2)}}},
     ],
-}, threads=2)
+})
 sim.run_stage()
 
 
