@@ -11,6 +11,9 @@ deb=''
 if [[ ${1-} == --deb ]]; then
   deb=yes
   shift
+  for tool in dpkg-shlibdeps file; do # without them CPack would write packages that depend on nothing
+    command -v "$tool" > /dev/null || { echo "package: $tool is missing; install it: apt-get install dpkg-dev file" >&2; exit 1; }
+  done
 fi
 words=()
 while [[ $# != 0 && $1 != -- ]]; do

@@ -61,10 +61,10 @@ zmodload zsh/zpty
 zpty z zsh -f -i
 zpty -w z "PROMPT=; fpath=($1 \$fpath); path=($2 \$path); autoload -Uz compinit; compinit -u -D; bindkey '^I' complete-word"
 zpty -w z 'compadd() { local -a hits; case " $* " in *" -O "*|*" -A "*|*" -D "*) ;; *) builtin compadd -A hits "$@"; print -rl -- "<hit>"$^hits ;; esac; builtin compadd "$@" }'
-zpty -w z 'print -r -- REA''DY'
+zpty -w z 'finish() { print -r -- DO""NE }; zle -N finish; bindkey "^G" finish'
+zpty -w z 'zle-line-init() { print -r -- REA""DY }; zle -N zle-line-init'
 zpty -r z seen '*READY*'
-zpty -w -n z "$3"$'\t'
-zpty -w z $'\C-U'"print -r -- DO''NE"
+zpty -w -n z "$3"$'\t\C-G'
 zpty -r z seen '*DONE*'
 print -r -- $seen | tr -d '\r' | grep -ao '<hit>.*' | sed 's/<hit>//' | sort -u
 )");

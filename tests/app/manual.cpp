@@ -63,12 +63,13 @@ TEST(Manual, OfGritHasCommandsStatusesVariablesAndFiles) {
 
 TEST(Manual, DoesNotDependOnTheMachine) {
   const OwnFolder folder;
-  const auto on = [&](const std::string& cores, const std::string& command) {
-    return shell(folder.path(), "taskset -c " + cores + " '" GRIT_BINARY "' manual " + command).out;
+  const auto on_one_core = [&](const std::string& command) {
+    const std::string core = "$(taskset -pc $$ | sed 's/.*: //; s/[,-].*//')";  // the first of those allowed
+    return shell(folder.path(), "taskset -c " + core + " '" GRIT_BINARY "' manual " + command).out;
   };
   for (const char* command : {"run", "check", "study"}) {
-    EXPECT_THAT(on("0", command), HasSubstr("Default: all cores."));
-    EXPECT_EQ(on("0", command), grit_in(folder.path(), {"manual", command}).out);
+    EXPECT_THAT(on_one_core(command), HasSubstr("Default: all cores."));
+    EXPECT_EQ(on_one_core(command), grit_in(folder.path(), {"manual", command}).out);
   }
 }
 

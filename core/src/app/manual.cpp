@@ -1,5 +1,6 @@
 // Manual pages, in the macros of man(7), of the declarations of the commands.
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
