@@ -152,8 +152,8 @@ std::string commands_text(const std::string& scene_file) {
 }
 
 std::string readme(const Guide& guide, const std::string& name, const std::string& scene_file) {
-  const std::string made = std::string(guide.doc) + ", a plugin of grit";
-  return "# " + name + "\n" + made + ". It begins as the worked example of the guide, `docs/plugins/" + guide.page +
+  return "# " + name + "\nThis is " + guide.doc +
+         ", a plugin of grit. It begins as the worked example of the guide, `docs/plugins/" + guide.page +
          "`, which has the rules for this kind.\n\n"
          "| file | |\n| --- | --- |\n| `" +
          name + ".hpp` | the code |\n| `" + name +
