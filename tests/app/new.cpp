@@ -20,6 +20,8 @@ struct Example {
   const char* name;
   const char* page;
   const char* type;  ///< the class
+
+  friend void PrintTo(const Example& example, std::ostream* out) { *out << example.kind; }
 };
 class New : public testing::TestWithParam<Example> {
  protected:
@@ -91,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Kind, New,
                          testing::Values(Example{"contact", "adhesive", "contact-law.md", "Adhesive"},
                                          Example{"geometry", "ball", "geometry.md", "Ball"},
                                          Example{"probe", "peak-speed", "probe.md", "PeakSpeed"},
-                                         Example{"engine", "linear-drag", "engine.md", "Drag"},
+                                         Example{"engine", "linear-drag", "engine.md", "LinearDrag"},
                                          Example{"scenario", "heap", "scenario.md", "Heap"},
                                          Example{"body", "shell", "body.md", "Shell"}),
                          [](const auto& info) { return std::string(info.param.kind); });

@@ -123,7 +123,7 @@ std::string scene(const Guide& guide, const std::string& name) {
                     {"material", "sand"}}}}},
                 {"engines",
                  {{"gravity", {{"type", "gravity"}}}, {"damping", {{"type", "local-damping"}, {"coefficient", 0.05}}}}},
-                {"stages", {{{"name", "fall"}, {"until", {{"type", "time"}, {"value", "20 ms"}}}}}}};
+                {"stages", {{{"name", "fall"}, {"until", {{"type", "time"}, {"value", "20 ms"}}}, {"limit", "1 s"}}}}};
   json& place = scene[json::json_pointer(guide.section)];
   place["type"] = name;
   place.update(json::parse(guide.values));
@@ -213,7 +213,7 @@ ExitStatus new_command(const Options& options) {
 
   const fs::path folder = options.has("out") ? options.get<std::string>("out") : name;
   std::error_code none;
-  if (fs::exists(fs::symlink_status(folder, none)) && !fs::is_empty(folder, none))
+  if (fs::exists(fs::symlink_status(folder, none)) && !(fs::is_directory(folder, none) && fs::is_empty(folder, none)))
     throw FileError(folder.string() +
                     ": exists and is not an empty folder; nothing was written: choose another by --out");
   fs::create_directories(folder);
