@@ -34,7 +34,7 @@ constexpr std::array<Guide, 6> guides{{
     {kind_name<ContactLaw>(), "a contact law", "contact-law.md", guide_contact, "/contacts", "{}"},
     {kind_name<Geometry>(), "a geometry of walls", "geometry.md", guide_geometry, "/walls/own",
      R"({"centre": ["5 mm", "5 mm", 0], "radius": "3 mm", "material": "sand"})"},
-    {kind_name<Probe>(), "a probe", "probe.md", guide_probe, "/probes/own", R"({"every": "1 ms"})"},
+    {kind_name<Probe>(), "a probe", "probe.md", guide_probe, "/probes/own", R"({"every_time": "1 ms"})"},
     {kind_name<Engine>(), "an engine", "engine.md", guide_engine, "/engines/own", "{}"},
     {kind_name<Scenario>(), "a scenario", "scenario.md", guide_scenario, "", "{}"},
     {kind_name<BodyKind>(), "a kind of body", "body.md", guide_body, "/bodies/grains", "{}"},
