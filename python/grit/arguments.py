@@ -42,6 +42,15 @@ def positive(name, value):
     return float(value)
 
 
+def not_negative(name, value):
+    """A finite number from 0."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        _refuse(name, value, "a number from 0")
+    if not 0 <= value < math.inf:
+        _refuse(name, value, "a finite number from 0", ValueError)
+    return float(value)
+
+
 def text(name, value, example):
     """A text that is not empty."""
     if not isinstance(value, str):

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 
 from . import arguments, compiled, progress as progress_display
 from .errors import Error, UnknownName
+from .engine import Engine
 from .picture import Picture
 from .recording import Recording
 from .world import Bodies, Cell, Clumps, Contacts, Departures, Energies, Walls
@@ -52,7 +53,8 @@ class Simulation:
                 raise UnknownName("state", one, _STATES)
         self._core = _grit.Simulation(arguments.as_json(description) if is_json else self._name, is_json, arguments.whole("threads", threads, 1, _MOST_THREADS),
                                       arguments.assignments(sets), arguments.folders("plugin_path", plugin_path), keep, checkpoint is not None)
-        self._observers, self._recordings, self._display = [], {}, None
+        self._core.own(self)
+        self._observers, self._recordings, self._engines, self._display = [], {}, {}, None
         self._bodies, self._contacts, self._clumps = Bodies(self._core), Contacts(self._core), Clumps(self._core)
         if checkpoint is not None:
             self.resume(checkpoint)
@@ -91,7 +93,7 @@ class Simulation:
 
     def _run(self, steps, until, stage, progress):
         try:
-            self._core.run(self, steps, until, stage, progress_display.is_seen() if progress is None else bool(progress))
+            self._core.run(steps, until, stage, progress_display.is_seen() if progress is None else bool(progress))
         finally:
             if self._display is not None:
                 self._display.close()
@@ -148,7 +150,12 @@ class Simulation:
         return function
 
     def remove(self, function):
-        """Ends the calls of a function that every() or at_stage_end() has registered."""
+        """Ends the calls of a function that every(), at_stage_end() or engine() has registered."""
+        if engines := [name for name, engine in self._engines.items() if engine.function is function]:
+            for name in engines:
+                self._core.remove_engine(name)
+                del self._engines[name]
+            return
         if not any(known is function for known, _ in self._observers):
             raise Error(f"{function!r} is no callback of this simulation")
         self._observers = [(None, None) if known is function else (known, observer) for known, observer in self._observers]
@@ -180,6 +187,36 @@ class Simulation:
             self._recordings[name] = recording, record
             return function
         return decorate
+
+    def engine(self, name, *, stiffness=0.0, damping=0.0):
+        """Decorates a function that returns the force on each body [N], in every step: an array n × 3, one vector for all, None for nothing, or a
+        pair of forces and moments [N m]. It takes the simulation, or nothing.
+
+        stiffness, damping: upper bounds over all bodies of the derivatives of the force with position [N/m] and with velocity [N s/m], over the
+        mass: of these the time step must know. The same name again replaces the engine, remove(function) ends it.
+        The function must give the same for the same instant, and not depend on the order of bodies. What it raises ends the simulation, as it is
+        in the middle of a step; at Ctrl-C it is called again, and the run ends after the step. An engine is no part of the description: add it
+        again before resume(). Raises Error for the name of an engine of the description. Slow: engines of the description are 100 times faster.
+        """
+        name = arguments.text("name", name, "wind")
+        rates = arguments.not_negative("stiffness", stiffness), arguments.not_negative("damping", damping)
+
+        def decorate(function):
+            engine = Engine(name, function, _with_simulation(function))
+            before = self._engines.get(name)
+            self._engines[name] = engine
+            try:
+                self._core.set_engine(name, *rates)
+            except BaseException:
+                del self._engines[name]
+                if before is not None:
+                    self._engines[name] = before
+                raise
+            return function
+        return decorate
+
+    def _acted(self, name, bodies):
+        return self._engines[name].act(self, bodies)
 
     def series(self, name):
         """What the probe of this name has recorded. Those of the description are in the results of `grit run`."""

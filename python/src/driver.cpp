@@ -1,5 +1,6 @@
 #include "driver.hpp"
 
+#include <type_traits>
 #include <utility>
 
 #include "format/number.hpp"
@@ -19,22 +20,55 @@ constexpr double progress_every = 0.2;  // s
 /// While it lives the simulation belongs to this thread, and arrays that were taken before do not change.
 class Driver::Running {
  public:
-  explicit Running(Driver& driver, py::handle owner = {}) : driver_(driver) {
+  explicit Running(Driver& driver) : driver_(driver) {
     driver_.arrays_.let_go();
-    driver_.runs_ = true, driver_.thread_ = std::this_thread::get_id(), driver_.owner_ = owner;
+    driver_.runs_ = true, driver_.thread_ = std::this_thread::get_id();
     driver_.has_forces_ = false;
   }
   Running(const Running&) = delete;
-  ~Running() { driver_.runs_ = false, driver_.owner_ = {}; }
+  ~Running() { driver_.runs_ = false; }
   /// Runs `work` without the GIL.
   template <class Work>
   auto free(const Work& work) {
-    const py::gil_scoped_release released;
-    return work();
+    const auto freed = [&] {
+      const py::gil_scoped_release released;
+      return work();
+    };
+    try {
+      if constexpr (std::is_void_v<decltype(work())>) {
+        freed();
+        driver_.throw_raised();
+      } else {
+        auto result = freed();
+        driver_.throw_raised();
+        return result;
+      }
+    } catch (...) {
+      driver_.throw_raised();
+      throw;
+    }
   }
 
  private:
   Driver& driver_;
+};
+
+/// An engine whose forces a function in Python returns.
+class Driver::PythonEngine final : public Engine {
+ public:
+  PythonEngine(Driver& driver, std::string name, const EngineRates& rates)
+      : driver_(driver), name_(std::move(name)), rates_(rates) {}
+  void declare(Parameters&) override {}
+  Phase phase() const override { return Phase::forces; }
+  void forces(const World&, std::span<Row> force, std::span<Row> moment) const override {
+    driver_.act(name_, force, moment);
+  }
+  EngineRates rates(const World&) const override { return rates_; }
+
+ private:
+  Driver& driver_;
+  std::string name_;
+  EngineRates rates_;
 };
 
 Driver::Driver(Simulation simulation) : simulation_(std::move(simulation)) {
@@ -51,8 +85,16 @@ void Driver::refuse_other_threads() const {
 
 void Driver::refuse_while_running(const char* what) const {
   refuse_other_threads();
-  if (runs_)
+  if (runs_ || acts_)
     throw Error(std::string(what) + " cannot be called in a callback of the same simulation; call it after run()");
+}
+
+void Driver::refuse_in_engine(const char* what) const {
+  refuse_other_threads();
+  if (acts_)
+    throw Error(std::string(what) +
+                " cannot be called in an engine, which acts in the middle of a step; call it in a callback "
+                "(@sim.every) or after run()");
 }
 
 /// A goal that cannot be reached, so that a loop up to a condition would never end.
@@ -70,6 +112,10 @@ void Driver::refuse_done(const Goal& goal) const {
 
 bool Driver::stops() {
   if (!runs_) return false;
+  if (raised_) {
+    const py::gil_scoped_acquire acquired;
+    throw_raised();
+  }
   const World& world = simulation_.world();
   // As callbacks by time, at the nearest step.
   if (world.step() >= last_step_ || world.time() >= last_time_ - 0.5 * world.dt()) return true;
@@ -81,30 +127,69 @@ bool Driver::stops() {
   return false;
 }
 
+py::object Driver::owner() const {
+  py::object alive = owner_ ? owner_() : py::none();
+  if (alive.is_none()) throw Error("the simulation of these arrays is no more; keep it as long as they are read");
+  return alive;
+}
+
+void Driver::throw_raised() {
+  if (!raised_) return;
+  const py::error_already_set error = *std::exchange(raised_, std::nullopt);
+  throw error;
+}
+
 void Driver::observe(std::size_t number) {
   if (!runs_) return;
   const py::gil_scoped_acquire acquired;
   has_forces_ = true;
-  owner_.attr("_observed")(number);
+  owner().attr("_observed")(number);
   has_forces_ = false;
   arrays_.let_go();
+}
+
+void Driver::act(const std::string& engine, std::span<Row> force, std::span<Row> moment) {
+  const py::gil_scoped_acquire acquired;
+  const auto add = [](const py::handle& values, std::span<Row> rows) {
+    if (values.is_none()) return;
+    const auto given = py::cast<py::array_t<double, py::array::c_style>>(values);
+    const auto row = given.unchecked<2>();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto at = static_cast<py::ssize_t>(i);
+      rows[i] += Row{row(at, 0), row(at, 1), row(at, 2), 0};
+    }
+  };
+  for (bool again = false;; again = true) try {
+      acts_ = true;
+      const auto added = owner().attr("_acted")(engine, force.size()).cast<py::tuple>();
+      acts_ = false;
+      arrays_.let_go();
+      add(added[0], force), add(added[1], moment);
+      return;
+    } catch (py::error_already_set& error) {
+      acts_ = false;
+      arrays_.let_go();
+      const bool interrupts = !again && error.matches(PyExc_KeyboardInterrupt);
+      if (!raised_) raised_ = error;
+      if (!interrupts) throw Error("the engine \"" + engine + "\" raised an exception in the middle of a step");
+    }
 }
 
 void Driver::report(const Progress& now) {
   if (!shows_progress_ || Clock::now() - began_ < progress_after) return;
   const py::gil_scoped_acquire acquired;
-  owner_.attr("_progressed")(now.stage, now.stage_number, now.stages, now.fraction, now.seconds_left, now.time,
-                             now.particle_steps_per_second);
+  owner().attr("_progressed")(now.stage, now.stage_number, now.stages, now.fraction, now.seconds_left, now.time,
+                              now.particle_steps_per_second);
 }
 
-void Driver::run(const py::object& owner, const Goal& goal, bool shows_progress) {
+void Driver::run(const Goal& goal, bool shows_progress) {
   refuse_while_running("run()");
   simulation_.parts().refuse_failed();
   refuse_done(goal);
   // The balance begins when it is first read.
   if (!has_begun_ && simulation_.parts().kernel.state().bodies.energies())
     static_cast<void>(world_with_forces().energies());
-  Running running(*this, owner);
+  Running running(*this);
   const World& world = simulation_.world();
   const std::uint64_t furthest = std::numeric_limits<std::uint64_t>::max();
   last_step_ = goal.steps > furthest - world.step() ? furthest : world.step() + goal.steps;
@@ -131,11 +216,16 @@ Forecast Driver::check() {
 }
 
 void Driver::set(const std::string& pointer, const std::string& value) {
-  refuse_other_threads();
+  refuse_in_engine("set()");
   simulation_.parts().refuse_failed();
   arrays_.let_go();
   has_begun_ = true, has_forces_ = false;
-  simulation_.set(pointer, Description::parse(value));
+  try {
+    simulation_.set(pointer, Description::parse(value));
+  } catch (...) {
+    throw_raised();
+    throw;
+  }
 }
 
 std::shared_ptr<const Description> Driver::facts() {
@@ -185,6 +275,20 @@ std::size_t Driver::at_stage_end() {
   return observers_++;
 }
 
+void Driver::set_engine(const std::string& name, const EngineRates& rates) {
+  refuse_in_engine("engine()");
+  arrays_.let_go();
+  has_forces_ = false;
+  simulation_.set_engine(name, std::make_shared<PythonEngine>(*this, name, rates));
+}
+
+void Driver::remove_engine(const std::string& name) {
+  refuse_in_engine("remove()");
+  arrays_.let_go();
+  has_forces_ = false;
+  simulation_.set_engine(name, nullptr);
+}
+
 const World& Driver::world() const {
   refuse_other_threads();
   return simulation_.world();
@@ -192,7 +296,7 @@ const World& Driver::world() const {
 
 const World& Driver::world_with_forces() {
   refuse_other_threads();
-  if (!has_forces_ && !runs_) {
+  if (!has_forces_ && !runs_ && !acts_) {
     Running running(*this);
     running.free([&] {
       if (has_begun_) simulation_.step(0);

@@ -102,13 +102,14 @@ PYBIND11_MODULE(_grit, module) {
       .def(py::init(&open), py::arg("source"), py::arg("json"), py::arg("threads"), py::arg("sets"),
            py::arg("plugin_path"), py::arg("state"), py::arg("resumes"), py::call_guard<py::gil_scoped_release>())
       .def("run",
-           [](Driver& driver, const py::object& owner, std::optional<std::uint64_t> steps, std::optional<double> until,
-              bool stage, bool progress) {
+           [](Driver& driver, std::optional<std::uint64_t> steps, std::optional<double> until, bool stage,
+              bool progress) {
              Goal goal{.stage = stage};
              if (steps) goal.steps = *steps;
              if (until) goal.time = *until;
-             driver.run(owner, goal, progress);
+             driver.run(goal, progress);
            })
+      .def("own", &Driver::own)
       .def("check", &Driver::check)
       .def("set", &Driver::set)
       .def("save", &Driver::save)
@@ -116,7 +117,12 @@ PYBIND11_MODULE(_grit, module) {
       .def("write", [](Driver& driver, const std::filesystem::path& path) { write_saved(path, driver.save()); })
       .def("every_time", &Driver::every_time)
       .def("every_steps", &Driver::every_steps)
-      .def("at_stage_end", &Driver::at_stage_end);
+      .def("at_stage_end", &Driver::at_stage_end)
+      .def("set_engine",
+           [](Driver& driver, const std::string& name, double stiffness, double damping) {
+             driver.set_engine(name, {stiffness, damping});
+           })
+      .def("remove_engine", &Driver::remove_engine);
   simulation.def("picture", [](Driver& driver, const std::string& view, const std::string& color) {
     return picture_of(driver.world(), view, color);
   });

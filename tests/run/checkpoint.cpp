@@ -517,7 +517,9 @@ TEST(Checkpoint, OfAnotherVersionOfAPartIsRefused) {
   EXPECT_THAT(refusal(d, state.with(state.part("neighbour lists") - version, std::uint32_t{2})),
               HasSubstr("the saved state of \"neighbour lists\" has version 2, allowed is 1"));
   EXPECT_THAT(refusal(d, state.with(state.part("streams") - version - 1, 'x')),
-              HasSubstr("the saved state holds other parts: \"streams\" is missing"));
+              HasSubstr("the saved state holds other parts: \"streams\" is missing, found is \"streamx\";"));
+  EXPECT_THAT(refusal(d, state.with(state.part("streams") - version - 1, '\x1b')),
+              HasSubstr("the saved state holds other parts: \"streams\" is missing; it belongs"));
   EXPECT_THAT(refusal(d, state.with(state.part("force-chains") - version, std::uint32_t{9})),
               AllOf(HasSubstr("probe \"force-chains\" cannot be restored from a checkpoint"),
                     HasSubstr("\"force-chains\" has version 9, allowed is 1")));

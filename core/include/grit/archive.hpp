@@ -2,6 +2,7 @@
 // both.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -63,9 +64,13 @@ class Archive {
     std::string found = name;
     std::uint32_t found_version = version;
     one(found), one(found_version);
-    if (found != name)
-      throw Error("the saved state holds other parts: \"" + name +
-                  "\" is missing; it belongs to another component or version");
+    if (found != name) {
+      const bool is_text =
+          found.size() < 100 && std::all_of(found.begin(), found.end(), [](char c) { return c >= ' ' && c <= '~'; });
+      throw Error("the saved state holds other parts: \"" + name + "\" is missing" +
+                  (is_text ? ", found is \"" + found + "\"" : "") +
+                  "; it belongs to another description, component or version");
+    }
     if (found_version != version)
       throw Error("the saved state of \"" + name + "\" has version " + std::to_string(found_version) + ", allowed is " +
                   std::to_string(version) + "; it belongs to another version of the component");

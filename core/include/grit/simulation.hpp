@@ -22,6 +22,8 @@
 
 namespace grit {
 
+class Engine;
+
 /// How a simulation is opened.
 struct SimulationOptions {
   unsigned threads = 1;           ///< results are identical for any number
@@ -106,6 +108,12 @@ class Simulation {
   /// Throws DescriptionError for another pointer, a value out of range, and one without effect from now on; nothing has
   /// changed then. Throws Error if the simulation is done.
   void set(const std::string& pointer, const Description& value);
+
+  /// Adds an engine of the program to those of the description, from now on and on all bodies; replaces one that was
+  /// added by this name; null removes it. It is no part of the description: add it again before resume(). An exception
+  /// of Engine::forces() ends a step midway. Throws Error for the name of an engine of the description, for an engine
+  /// that needs state which is not kept (SimulationOptions::state), and if the simulation is done.
+  void set_engine(const std::string& name, std::shared_ptr<Engine> engine);
 
   using Observer = std::function<void(const World&)>;
   /// Calls an observer at the start of each stage and then at this interval of simulated time [s], or of steps.

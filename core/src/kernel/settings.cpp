@@ -15,7 +15,9 @@ namespace {
 std::vector<ActingEngine> take_engines(const SceneDescription& scene, const Components& components, Settings& now) {
   std::vector<ActingEngine> of_settings;
   for (const auto& [name, engine] : components.engines) {
-    GroupMask groups = group_mask(scene.engines.at(name).groups, now.groups);
+    const auto described = scene.engines.find(name);  // not if a program has added it
+    GroupMask groups =
+        described == scene.engines.end() ? GroupMask() : group_mask(described->second.groups, now.groups);
     const Phase phase = engine->phase();
     auto& engines = phase == Phase::settings ? of_settings
                     : phase == Phase::forces ? now.force_engines

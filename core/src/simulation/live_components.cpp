@@ -65,9 +65,12 @@ std::optional<NumberPlace> LiveLaw::number(const NumberPointer& place) {
 }
 
 void LiveEngines::follow(const SceneDescription& now) {
-  drop_others(engines_, now.engines);
+  std::erase_if(engines_,
+                [&](const auto& one) { return !now.engines.contains(one.first) && !added_.contains(one.first); });
   drop_others(described_, now.engines);
   for (const auto& [name, engine] : now.engines) {
+    if (added_.contains(name))
+      throw PlacedError({"engines", name}, "found an engine that the program has added before; choose another name");
     const Component<Engine>& wanted = engine.engine;
     const auto known = described_.find(name);
     const bool is_set = set_from_outside_.erase(name) > 0;
@@ -90,6 +93,19 @@ bool LiveEngines::declare(const std::string& name, Parameters& parameters) {
   engine->second->declare(parameters);
   set_from_outside_.insert(name);
   return true;
+}
+
+void LiveEngines::set_added(const std::string& name, std::shared_ptr<Engine> engine) {
+  if (engine) {
+    engines_[name] = std::move(engine);
+    added_.insert(name);
+  } else if (added_.erase(name) > 0) {
+    engines_.erase(name);
+  }
+}
+
+std::shared_ptr<Engine> LiveEngines::added(const std::string& name) const {
+  return added_.contains(name) ? engines_.at(name) : nullptr;
 }
 
 bool LiveGeometries::follow(const SceneDescription& now, const ReportFault& report) {

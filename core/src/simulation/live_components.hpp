@@ -40,7 +40,8 @@ class LiveLaw {
   std::vector<InterfaceDescription> interfaces_;
 };
 
-/// The engines of a description. An engine keeps its instance and state as long as its type does not change.
+/// The engines of a description, and those that a program adds. An engine of the description keeps its instance and
+/// state as long as its type does not change.
 class LiveEngines {
  public:
   void follow(const SceneDescription& now);
@@ -49,9 +50,14 @@ class LiveEngines {
   std::optional<NumberPlace> number(const NumberPointer& place);
   /// Declares an engine, which is set from outside from now on. False if there is none of this name.
   bool declare(const std::string& name, Parameters& parameters);
+  /// Adds, replaces or removes (null) an engine that is in no description.
+  void set_added(const std::string& name, std::shared_ptr<Engine> engine);
+  /// Null if there is none of this name.
+  std::shared_ptr<Engine> added(const std::string& name) const;
 
  private:
-  std::map<std::string, std::shared_ptr<Engine>> engines_;
+  std::map<std::string, std::shared_ptr<Engine>> engines_;  // all of them
+  std::set<std::string> added_;
   std::map<std::string, Component<Engine>> described_;
   std::set<std::string> set_from_outside_;  // by a bound number, so that they differ from the description
 };

@@ -109,6 +109,23 @@ bool LiveScene::set(const std::string& pointer, const Description& value, const 
   return false;
 }
 
+void LiveScene::set_engine(const std::string& name, std::shared_ptr<Engine> engine, const std::function<void()>& take) {
+  if (now().engines.contains(name))
+    throw Error("found an engine \"" + name + "\" in /engines of the description; choose another name");
+  const auto apply = [&](std::shared_ptr<Engine> one) {
+    engines_.set_added(name, std::move(one));
+    components_.engines = engines_.all();
+    take();
+  };
+  std::shared_ptr<Engine> before = engines_.added(name);
+  try {
+    apply(std::move(engine));
+  } catch (...) {
+    apply(std::move(before));
+    throw;
+  }
+}
+
 bool LiveScene::set_in_place(const std::string& pointer, double value) {
   const Number* const number = bind(pointer);
   if (number == nullptr) return false;

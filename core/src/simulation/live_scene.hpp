@@ -38,6 +38,9 @@ class LiveScene {
   /// changed then.
   bool set(
       const std::string& pointer, const Description& value, const std::function<void()>& take = [] {});
+  /// Adds, replaces or removes (null) an engine of the program; `take` applies it. Throws Error for the name of an
+  /// engine of the description; nothing has changed then.
+  void set_engine(const std::string& name, std::shared_ptr<Engine> engine, const std::function<void()>& take);
   /// Sets a number in place without checks, as set() did in the run that was saved.
   void restore(const std::string& pointer, double value);
   /// Advances from the start to this stage, with `increments` done.

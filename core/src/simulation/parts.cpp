@@ -76,6 +76,20 @@ void Simulation::Parts::set(const std::string& pointer, const Description& value
   runner.set(pointer, value);
 }
 
+void Simulation::Parts::set_engine(const std::string& name, std::shared_ptr<Engine> engine) {
+  refuse_failed();
+  if (engine) {
+    const StateRequest kept = kernel.state().bodies.state, needed = engine->needs();
+    for (const auto& [state, what] :
+         {std::pair(BodyState::rotation, "rotations"), std::pair(BodyState::displacement, "displacements"),
+          std::pair(BodyState::energy, "the energy balance")})
+      if (needed.has(state) && !kept.has(state))
+        throw Error("the engine \"" + name + "\" needs " + what +
+                    ", which are not kept; request this state when the simulation is opened");
+  }
+  runner.set_engine(name, std::move(engine));
+}
+
 Checkpoint Simulation::Parts::save() {
   start();
   return runner.save();

@@ -33,6 +33,7 @@ struct Simulation::Parts {
   /// One step, or the end of a stage, as in StageRunner::next(); with progress and checkpoints.
   StageRunner::Event next(bool stop);
   void set(const std::string& pointer, const Description& value);
+  void set_engine(const std::string& name, std::shared_ptr<Engine> engine);
   Checkpoint save();
   void show_instant();
   bool wants_to_stop() const { return interrupted && interrupted(); }

@@ -116,6 +116,11 @@ void Simulation::set(const std::string& pointer, const Description& value) {
   parts_->set(pointer, value);
 }
 
+void Simulation::set_engine(const std::string& name, std::shared_ptr<Engine> engine) {
+  if (done()) throw Error("the simulation is done; an engine would have no effect now");
+  parts_->set_engine(name, std::move(engine));
+}
+
 void Simulation::every_time(double seconds, Observer observer) {
   parts_->runner.call({.every_time = seconds}, std::move(observer));
 }

@@ -232,6 +232,11 @@ void StageRunner::set(const std::string& pointer, const Description& value) {
   note({stage_, increments_, pointer, value.dump(), in_place});
 }
 
+void StageRunner::set_engine(const std::string& name, std::shared_ptr<Engine> engine) {
+  live_.set_engine(name, std::move(engine), [this] { kernel_.change(live_.now(), live_.components()); });
+  instant_.has_forces = false;
+}
+
 void StageRunner::note(Set set) {
   // Numbers that are set where they are do not depend on each other. Other values may depend on all before them.
   for (std::size_t i = sets_.size(); set.in_place && i > 0 && sets_[i - 1].in_place; --i)

@@ -53,6 +53,8 @@ class StageRunner {
   void call(const Cadence& cadence, std::function<void(const World&)> observer);
   /// Sets a value of the description from now on. Throws DescriptionError.
   void set(const std::string& pointer, const Description& value);
+  /// Adds, replaces or removes an engine of the program, as LiveScene::set_engine().
+  void set_engine(const std::string& name, std::shared_ptr<Engine> engine);
   /// Fraction of the present stage that is done, where its end can be foreseen.
   std::optional<double> progress() const;
 
