@@ -92,18 +92,19 @@ class Slurm:
             deadline = time.monotonic() + 30
             while self.call('squeue', '--noheader', check=False) and time.monotonic() < deadline:
                 time.sleep(0.2)
-        for name in ('slurmd', 'slurmctld', 'munged'):
-            self.end(name)
+        daemons = [process for name in ('slurmd', 'slurmctld', 'munged') if (process := self.ended(name)) is not None]
+        deadline = time.monotonic() + 15
+        while any(Path(f'/proc/{process}').exists() for process in daemons) and time.monotonic() < deadline:
+            time.sleep(0.02)
 
-    def end(self, name):
+    def ended(self, name):
+        """The process of a daemon, which is asked to end; None if there is none."""
         try:
             process = int((self.folder / f'{name}.pid').read_text())
             os.kill(process, 15)
         except (OSError, ValueError):
-            return
-        deadline = time.monotonic() + 15
-        while Path(f'/proc/{process}').exists() and time.monotonic() < deadline:
-            time.sleep(0.1)
+            return None
+        return process
 
     def call(self, *words, check=True):
         outcome = subprocess.run([str(word) for word in words], env=self.environment, text=True, capture_output=True)

@@ -21,7 +21,7 @@ import slurm_here
 
 SKIPPED = 77
 
-# Some seconds each, with many checkpoints.
+# A second each, with many checkpoints.
 SCENE = {
     'title': 'a grain that bounces',
     'contacts': {'type': 'linear-rolling'},
@@ -31,7 +31,7 @@ SCENE = {
     'walls': {'floor': {'type': 'plane', 'material': 'sand'}},
     'engines': {'gravity': {'type': 'gravity'}, 'damping': {'type': 'local-damping', 'coefficient': 0.1}},
     'time_step': {'safety': 0.001, 'steps_per_impact': 0},
-    'stages': [{'name': 'fall', 'until': {'type': 'time', 'value': '500 ms'}, 'limit': '10 s'}],
+    'stages': [{'name': 'fall', 'until': {'type': 'time', 'value': '150 ms'}, 'limit': '10 s'}],
     'probes': {'packing': {'type': 'packing', 'every_time': '1 ms'}},
     'output': {'checkpoint_every': '50 ms'},
 }
@@ -83,6 +83,13 @@ class Sweep:
             expect(time.monotonic() < deadline, f'{run} has no checkpoint; it was done too early, or did not begin')
             time.sleep(0.01)
 
+    def halt(self, run):
+        """Halts a run at its first checkpoint: it does not end before what is done to it. Its process."""
+        self.wait_for_checkpoint(run)
+        process = process_of(self, run)
+        os.kill(process, signal.SIGSTOP)
+        return process
+
     def expect_same(self, other):
         """The same bits in all runs, and the same metrics, as in another folder."""
         import h5py
@@ -119,6 +126,21 @@ def process_of(sweep, run):
     raise Failed(f'no process does {run}')
 
 
+def continue_at_signal(process, seconds=240):
+    """Lets a halted process go on when it has a signal to handle, unless who sent that did."""
+    deadline = time.monotonic() + seconds
+    while True:
+        try:
+            status = Path(f'/proc/{process}/status').read_text()
+        except OSError:
+            return
+        if any(int(mask, 16) for mask in re.findall(r'^(?:Sig|Shd)Pnd:\s*(\w+)', status, re.MULTILINE)):
+            break
+        expect(time.monotonic() < deadline, f'no signal for process {process}')
+        time.sleep(0.01)
+    os.kill(process, signal.SIGCONT)
+
+
 def by_slurm(place, grit, here):
     with slurm_here.Slurm(place / 'slurm') as slurm:
         sweep = Sweep(place / 'cluster', grit, slurm.environment)
@@ -129,8 +151,7 @@ def by_slurm(place, grit, here):
         job = re.search(r'^job (\d+): 3 runs$', text, re.MULTILINE)
         expect(job, f'no job:\n{text}')
         tasks = [f'{job[1]}_{index}' for index in range(3)]
-        for run in RUNS:
-            sweep.wait_for_checkpoint(run)
+        processes = [sweep.halt(run) for run in RUNS]
         going = sweep.study('--collect')
         expect('of 3 runs are done; ' in going and 'under way: ' in going, f'not collected on the way:\n{going}')
         expect('in the queue of Slurm' in sweep.study('--submit', 'slurm', status=5), 'submitted twice')
@@ -139,6 +160,8 @@ def by_slurm(place, grit, here):
         slurm.call('scontrol', 'requeue', tasks[0])
         slurm.call('scancel', '--batch', '--signal=USR1', tasks[1])
         slurm.call('scontrol', 'requeue', tasks[2])
+        for process in processes:
+            continue_at_signal(process)
         slurm.wait(lambda: slurm.state(tasks[2]) == 'PENDING', 'a task that waits')
         shutil.rmtree(sweep.results(RUNS[2]))
         slurm.wait(lambda: slurm.state(tasks[1]) in ('PENDING', 'RUNNING', 'COMPLETED') and
@@ -180,8 +203,7 @@ def by_parallel(place, grit, here):
     command = [grit, 'study', 'sweep.json', '--submit', 'parallel', '--jobs', '3']
     with subprocess.Popen(command, cwd=sweep.place, env=sweep.environment, text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT) as program:
-        sweep.wait_for_checkpoint(RUNS[0])
-        os.kill(process_of(sweep, RUNS[0]), signal.SIGKILL)
+        os.kill(sweep.halt(RUNS[0]), signal.SIGKILL)
         text = program.communicate(timeout=400)[0]
     expect(program.returncode == 5 and '1 run did not end' in text, f'status {program.returncode}:\n{text}')
     expect('2 of 3 runs are done; 1 under way: damping=0.1, seed 1.' in text, f'not named:\n{text}')
@@ -195,9 +217,10 @@ def by_parallel(place, grit, here):
     shutil.rmtree(sweep.place / 'results')
     with subprocess.Popen(command, cwd=sweep.place, env=sweep.environment, text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT) as program:
-        for run in RUNS:
-            sweep.wait_for_checkpoint(run)
+        processes = [sweep.halt(run) for run in RUNS]
         program.send_signal(signal.SIGTERM)
+        for process in processes:
+            continue_at_signal(process)
         text = program.communicate(timeout=400)[0]
     expect(program.returncode == 130 and 'run the same command again' in text, f'{program.returncode}:\n{text}')
     for run in RUNS:
