@@ -119,7 +119,8 @@ class Faults(unittest.TestCase):
             copy = shutil.copytree if (ROOT / part).is_dir() else shutil.copy
             (self.root / part).parent.mkdir(parents=True, exist_ok=True)
             copy(ROOT / part, self.root / part)
-        shutil.copytree(ROOT / 'core/include/grit', self.root / 'core/include/grit')
+        self.write('core/include/grit/probe.hpp', '/// @file\n/// Probes.\n\nnamespace grit {\n/// A probe.\nstruct Probe {};\n}\n')
+        self.write('docs/site/sdk.dox', '/** @mainpage Headers\n See @ref grit/probe.hpp.\n\n @namespace grit\n The SDK.\n*/\n')
         self.write('README.md', '# Small\n[Index](docs/README.md), [a file](sims/one.json), [a folder](sims).\n')
         self.write('docs/README.md', '# Index\n1. [README](../README.md)\n2. [Page](page.md)\n3. [More](#more)\n\n## More\n- [Other](other.md)\n')
         self.write('docs/page.md', '# Page\n## A part\n[Here](#a-part), [there](other.md#b-part), [header](../core/include/grit/probe.hpp).\n')

@@ -46,10 +46,10 @@ def self_test(root):
     for what, pattern, replacement, part in cases:
         with tempfile.TemporaryDirectory() as place:
             copy = Path(place)
-            shutil.copytree(root / HEADERS, copy / HEADERS)
-            (copy / DOXYFILE).parent.mkdir(parents=True)
-            shutil.copy(root / DOXYFILE, copy / DOXYFILE)
-            header = copy / HEADERS / 'engine.hpp'
+            header = copy / HEADERS / 'engine.hpp'       # alone: the others take ten times as long
+            for file in (header, copy / DOXYFILE):
+                file.parent.mkdir(parents=True)
+                shutil.copy(root / file.relative_to(copy), file)
             old = header.read_text(encoding='utf-8')
             new = re.sub(pattern, replacement, old, count=1)
             if new == old:
