@@ -14,7 +14,7 @@ folder. After a fault must hold:
   status  the exit status is as documented (grit --help), and the message names a file, a place in the description or a command
 
 Fault, scene and moment of a case follow from the seed. A case that fails keeps its folder, with the messages of its runs in log.txt.
---scale shortens all scenes. --markdown writes the table into PAGE, docs/evidence/reliability.md unless given; rows of other faults stay.
+--scale shortens all scenes. --undisturbed takes the undisturbed runs of a campaign that was kept. --markdown writes the table into PAGE, docs/evidence/reliability.md unless given; rows of other faults stay.
 
 Exit status: 0 all held; 1 some did not; 2 wrong use.
 """
@@ -53,6 +53,7 @@ NOT_LOADED = 127                                         # by the system, which 
 NOTHING_WRITTEN = 'nothing was written'                  # the message of a run that is interrupted before it begins
 
 CHECKPOINT_EVERY = 0.05                                  # s; no more often than 1 % of the run allows
+THREADS = 1, 2, 3                                        # of undisturbed runs
 FRAMES = 12                                              # in each scene, about
 POLL = 0.002                                             # s
 BUSY = 'import os, sys\nwhile os.getppid() == int(sys.argv[1]): pass'  # until this process ends, however it does
@@ -575,33 +576,43 @@ class Campaign:
         return environment
 
     def prepare(self):
-        """Runs the scenes undisturbed. Throws ValueError if they cannot be run or differ."""
+        """Runs the scenes undisturbed, unless they are given. Throws ValueError if they cannot be run or differ."""
         for name, scene in SCENES.items():
             if not matches(name, self.given.scene):
                 continue
-            folder = self.place / 'undisturbed' / name
-            folder.mkdir(parents=True)
-            file = folder / 'scene.json'
-            write_scene(self.grit, scene, file, self.given.scale)
-            seconds, memory, calls = [], 0, {}
-            for threads in (1, 2, 3):
-                out, log = folder / str(threads), folder / f'calls-{threads}.txt'
-                run = Process([self.grit, 'run', file, '--out', out, '--threads', str(threads), '--quiet', '--no-report'], folder / 'log.txt',
-                              self.shim_environment(out, log))
-                run.ends_within(3600)
-                if run.process.poll() is None:
-                    run.send(signal.SIGKILL)
-                if run.process.wait() != DONE:
-                    raise ValueError(f'{name}: the undisturbed run ends with exit status {run.process.returncode}:\n{run.text()}')
-                seconds.append(time.monotonic() - run.started)
-                memory = max(memory, run.memory)
-                for call, count in re.findall(r'^([a-z]+) (\d+)$', log.read_text(encoding='ascii'), re.M):
-                    calls[call] = max(calls.get(call, 0), int(count))
-            if calls.get('write', 0) == 0:
-                raise ValueError(f'{self.shim} counts no call of {self.grit}: it does not stand before the functions of the C library')
-            REFERENCES[name] = same_results.Reference([folder / str(threads) for threads in (1, 2, 3)])
-            self.scenes.append(Prepared(name, file, sum(seconds) / len(seconds), memory, calls))
-            print(f'{name}: {self.scenes[-1].seconds:.1f} s, {memory >> 20} MB of address space, {calls}', flush=True)
+            folder = (self.given.undisturbed or self.place).resolve() / 'undisturbed' / name
+            facts = folder / 'facts.json'
+            if self.given.undisturbed is None:
+                facts.write_text(json.dumps(self.run_undisturbed(name, scene, folder)), encoding='utf-8')
+            elif not facts.exists():
+                raise ValueError(f'{facts} does not exist; --undisturbed takes a folder that a campaign with --keep has printed')
+            REFERENCES[name] = same_results.Reference([folder / str(threads) for threads in THREADS])
+            self.scenes.append(Prepared(name, folder / 'scene.json', **json.loads(facts.read_text(encoding='utf-8'))))
+            one = self.scenes[-1]
+            print(f'{name}: {one.seconds:.1f} s, {one.memory >> 20} MB of address space, {one.calls}', flush=True)
+
+    def run_undisturbed(self, name, scene, folder):
+        """What the runs of a scene took, as in Prepared."""
+        folder.mkdir(parents=True)
+        file = folder / 'scene.json'
+        write_scene(self.grit, scene, file, self.given.scale)
+        seconds, memory, calls = [], 0, {}
+        for threads in THREADS:
+            out, log = folder / str(threads), folder / f'calls-{threads}.txt'
+            run = Process([self.grit, 'run', file, '--out', out, '--threads', str(threads), '--quiet', '--no-report'], folder / 'log.txt',
+                          self.shim_environment(out, log))
+            run.ends_within(3600)
+            if run.process.poll() is None:
+                run.send(signal.SIGKILL)
+            if run.process.wait() != DONE:
+                raise ValueError(f'{name}: the undisturbed run ends with exit status {run.process.returncode}:\n{run.text()}')
+            seconds.append(time.monotonic() - run.started)
+            memory = max(memory, run.memory)
+            for call, count in re.findall(r'^([a-z]+) (\d+)$', log.read_text(encoding='ascii'), re.M):
+                calls[call] = max(calls.get(call, 0), int(count))
+        if calls.get('write', 0) == 0:
+            raise ValueError(f'{self.shim} counts no call of {self.grit}: it does not stand before the functions of the C library')
+        return {'seconds': sum(seconds) / len(seconds), 'memory': memory, 'calls': calls}
 
     def try_case(self, fault, index):
         """One case. Whether the fault was applied."""
@@ -681,6 +692,7 @@ def main():
     parser.add_argument('--shim', type=Path, default=ROOT / 'build/tests/faults/faults_shim.so', metavar='FILE')
     parser.add_argument('--scale', type=float, default=1, metavar='X', help='of the number of steps of all scenes')
     parser.add_argument('--work', type=Path, default=WORK, metavar='DIR', help='where the runs are')
+    parser.add_argument('--undisturbed', type=Path, metavar='DIR', help='the folder of a campaign that was kept, whose undisturbed runs are taken')
     parser.add_argument('--keep', action='store_true', help='keep the folders of all cases')
     parser.add_argument('--no-load', action='store_true', help='without the busy process')
     parser.add_argument('--markdown', type=Path, nargs='?', const=PAGE, metavar='PAGE')
@@ -688,6 +700,8 @@ def main():
     for file in (given.grit, given.shim):
         if not file.is_file():
             parser.error(f'{file} does not exist; build the tree, with its tests, or name the file')
+    if given.undisturbed is not None and given.scale != 1:
+        parser.error('--scale beside --undisturbed, whose scenes have a length; omit it')
     campaign_faults = [fault for fault in FAULTS if matches(fault, given.only)]
     if not campaign_faults or not any(matches(name, given.scene) for name in SCENES):
         parser.error('no fault or no scene matches')

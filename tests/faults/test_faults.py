@@ -54,21 +54,36 @@ class Restarts(unittest.TestCase):
 
 
 class WrongPrograms(unittest.TestCase):
-    """Each does one thing wrong, which is counted in its column."""
+    """Each does one thing wrong, which is counted in its column. All are compared with the undisturbed runs of one that does not."""
 
-    def row(self, how, fault, scene='deforming-cell'):
-        status, text = script('faults.py', '--times', '4', '--only', fault, '--scene', scene, '--scale', '0.1', '--no-load',
-                              grit=HERE / 'broken_grit.py', BROKEN_GRIT=str(GRIT), BROKEN_HOW=how)
+    @classmethod
+    def setUpClass(cls):
+        cls.place = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.place.cleanup)
+        cls.right = cls.run_broken('not at all', 'SIGTERM', '--scale', '0.1', '--keep', '--work', cls.place.name)
+        cls.undisturbed = re.search(r'^the runs are in (.+)$', cls.right[1], re.M)
+
+    @staticmethod
+    def run_broken(how, fault, *words):
+        return script('faults.py', '--times', '4', '--only', fault, '--scene', 'deforming-cell', '--no-load', *words,
+                      grit=HERE / 'broken_grit.py', BROKEN_GRIT=str(GRIT), BROKEN_HOW=how)
+
+    def counts(self, fault, status, text):
         found = re.search(rf'^\| {re.escape(fault)} \| (\d+) \| (\d+) \| (\d+) \| (\d+) \|', text, re.M)
         self.assertTrue(found, text)
         tried, lost, bits, wrong_status = map(int, found.groups())
         self.assertGreater(tried, 0, text)
         self.assertEqual(status, 0 if lost + bits + wrong_status == 0 else 1, text)
-        return (lost, bits, wrong_status), text
+        return lost, bits, wrong_status
+
+    def row(self, how, fault):
+        self.assertTrue(self.undisturbed, self.right[1])
+        status, text = self.run_broken(how, fault, '--undisturbed', self.undisturbed[1])
+        return self.counts(fault, status, text), text
 
     def test_nothing_is_found_where_nothing_is_wrong(self):
-        counts, text = self.row('not at all', 'SIGTERM')
-        self.assertEqual(counts, (0, 0, 0), text)
+        status, text = self.right
+        self.assertEqual(self.counts('SIGTERM', status, text), (0, 0, 0), text)
 
     def test_a_dropped_sample(self):
         (lost, bits, _), text = self.row('sample', 'SIGTERM')
@@ -99,6 +114,20 @@ class WrongPrograms(unittest.TestCase):
         (_, _, status), text = self.row('silence', 'disk full at write')
         self.assertGreater(status, 0, text)
         self.assertIn('with a message that names nothing: none', text)
+
+
+class Undisturbed(unittest.TestCase):
+    """Runs that are given."""
+
+    def test_that_are_missing_are_reported(self):
+        status, text = script('faults.py', '--undisturbed', '/nowhere')
+        self.assertEqual((status, text.splitlines()[0]), (
+            1, 'faults: /nowhere/undisturbed/silo/facts.json does not exist; --undisturbed takes a folder that a campaign with --keep has printed'))
+
+    def test_have_a_length(self):
+        status, text = script('faults.py', '--undisturbed', '/nowhere', '--scale', '0.1')
+        self.assertEqual(status, 2)
+        self.assertIn('--scale beside --undisturbed, whose scenes have a length; omit it', text)
 
 
 class Messages(unittest.TestCase):
@@ -135,6 +164,6 @@ class Pages(unittest.TestCase):
         self.assertLessEqual(set(tables.rows_of(page, 'sanitizers')), {'address', 'thread', 'valgrind'})
 
 
-CASES = {'campaign': (Campaign,), 'restarts': (Restarts,), 'self-test': (WrongPrograms, Messages, Pages)}
+CASES = {'campaign': (Campaign,), 'restarts': (Restarts,), 'self-test': (WrongPrograms, Undisturbed, Messages, Pages)}
 suite = unittest.TestSuite(unittest.defaultTestLoader.loadTestsFromTestCase(case) for case in CASES[WHAT])
 sys.exit(0 if unittest.TextTestRunner(verbosity=2).run(suite).wasSuccessful() else 1)
