@@ -17,9 +17,9 @@ namespace grit {
 namespace {
 
 /// Abscissae at which a curve is compared.
-constexpr std::size_t curve_points = 20;
+constexpr std::size_t target_points = 20;
 /// Part of the target curve's range that that of a run has to cover; beyond its end its last value counts.
-constexpr double least_reach = 0.9;
+constexpr double least_target_reach = 0.9;
 
 /// Reports what a target's key has, and what is allowed.
 using Report = std::function<void(const char* key, const std::string& found, const std::string& allowed)>;
@@ -57,14 +57,14 @@ bool can_compare(double magnitude, double tolerance, const char* key, const Repo
 void add_curve(std::size_t index, const ReferencePoints& points, double tolerance, std::vector<Observation>& all) {
   const Metric curve{points.x, points.y, "", ""};
   const double from = points.x.front(), to = points.x.back();
-  for (std::size_t i = 0; i < curve_points; ++i) {
+  for (std::size_t i = 0; i < target_points; ++i) {
     const double x =
-        std::clamp(from + (to - from) * static_cast<double>(i) / static_cast<double>(curve_points - 1), from, to);
+        std::clamp(from + (to - from) * static_cast<double>(i) / static_cast<double>(target_points - 1), from, to);
     all.push_back({.target = index,
                    .at = x,
                    .value = at(curve, x),
                    .tolerance = tolerance,
-                   .weight = 1.0 / static_cast<double>(curve_points)});
+                   .weight = 1.0 / static_cast<double>(target_points)});
   }
 }
 
@@ -113,7 +113,7 @@ std::vector<double> found_in(const CalibrationDescription& calibration, const st
       continue;
     }
     const double from = mine.front().at, to = mine.back().at;
-    if (std::min(to, own.x.back()) - std::max(from, own.x.front()) < least_reach * (to - from))
+    if (std::min(to, own.x.back()) - std::max(from, own.x.front()) < least_target_reach * (to - from))
       throw NumericsError(
           fmt::format("{} has abscissae from {:g} to {:g}, the curve of the target {} from {:g} to {:g}; check the "
                       "units, and if a stage ends by a condition, choose another",

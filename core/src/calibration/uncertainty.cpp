@@ -205,10 +205,12 @@ Uncertainty uncertainty_at(const Trials& trials, std::size_t centre) {
   const Eigen::VectorXd errors = known.covariance.diagonal().cwiseSqrt();
   known.correlation = known.covariance.cwiseQuotient(errors * errors.transpose());
   for (const Eigen::Index k : idle) {
-    constexpr double unknown = std::numeric_limits<double>::infinity();
-    known.directions.push_back(
-        {.along = Eigen::VectorXd::Unit(count, k), .singular_value = 0, .standard_error = unknown, .resolved = false});
-    known.standard_error[k] = known.covariance(k, k) = unknown;
+    constexpr double unbounded = std::numeric_limits<double>::infinity();
+    known.directions.push_back({.along = Eigen::VectorXd::Unit(count, k),
+                                .singular_value = 0,
+                                .standard_error = unbounded,
+                                .resolved = false});
+    known.standard_error[k] = known.covariance(k, k) = unbounded;
     known.correlation.row(k).setZero(), known.correlation.col(k).setZero();
     known.correlation(k, k) = 1;
   }

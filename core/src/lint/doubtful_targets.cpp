@@ -49,7 +49,7 @@ using Target = std::function<std::optional<double>(const Targets& now)>;
 using Instants = std::vector<Targets>;
 
 /// Judges the conditions of a stage. The first stage begins without stress, or with that of a sample.
-struct Judge {
+struct TargetJudge {
   const Instants& before;  ///< in the stage before
   const Instants& during;
   bool is_first, has_sample;
@@ -194,7 +194,8 @@ std::vector<UnusedSetting> missed_targets(const Scene& described) {
   const Instants none;
   std::vector<UnusedSetting> all;
   for (std::size_t i = 0; i < stages.size(); ++i) {
-    const Judge judge{i > 0 ? targets[i - 1] : none, targets[i], i == 0, described.description->begin.has_value()};
+    const TargetJudge judge{i > 0 ? targets[i - 1] : none, targets[i], i == 0,
+                            described.description->begin.has_value()};
     std::ranges::move(judge.at(stages[i].until, "/stages/" + std::to_string(i) + "/until"), std::back_inserter(all));
   }
   return all;
