@@ -60,7 +60,7 @@ TEST(Debs, HaveTheirFilesInDebiansPlaces) {
   const std::string folder = "./usr/lib/grit/" OTHER "/";
   EXPECT_THAT(files_of("grit"),
               IsSupersetOf({std::string("./usr/bin/grit"), folder + "grit", folder + "libgrit.so",
-                            folder + "contacts/linear-rolling.so", std::string("./usr/share/man/man1/grit.1.gz"),
+                            folder + "contacts/" LAW ".so", std::string("./usr/share/man/man1/grit.1.gz"),
                             std::string("./usr/share/man/man1/grit-run.1.gz"),
                             std::string("./usr/share/bash-completion/completions/grit"),
                             std::string("./usr/share/zsh/vendor-completions/_grit")}));
@@ -136,7 +136,7 @@ TEST(Debs, RunWhereTheyAreUnpacked) {
                            "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=usr/lib/python3/dist-packages /usr/bin/python3 -c "
                            "'import grit; print(grit.__file__)'");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("usr/lib/grit/" OTHER "/contacts/linear-rolling.so"),
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("usr/lib/grit/" OTHER "/contacts/" LAW ".so"),
                                  HasSubstr("usr/lib/python3/dist-packages/grit/__init__.py")));
 }
 

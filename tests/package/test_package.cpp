@@ -31,9 +31,16 @@ Outcome grit(const fs::path& folder, const std::string& isa, std::vector<std::st
   return Program(all, folder).finish();
 }
 
+/// Two grains with the law of the package.
+std::string scene() {
+  auto json = nlohmann::json::parse(two_grains);
+  json["contacts"]["type"] = LAW;
+  return json.dump();
+}
+
 /// run.json of a run of two grains.
 nlohmann::json run(const OwnFolder& folder, const std::string& isa, const std::string& results) {
-  folder.write("two.json", two_grains);
+  folder.write("two.json", scene());
   const auto outcome = grit(folder.path(), isa, {"run", "two.json", "--out", results});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   return nlohmann::json::parse(text_of(folder / results / "run.json"));
@@ -72,18 +79,18 @@ TEST_P(Chosen, IsWhatRunJsonTells) {
 TEST_P(Chosen, IsWhatTheCommandTells) {
   EXPECT_THAT(grit(folder.path(), isa, {"--version"}).out, HasSubstr(" (-march=" + isa + ")\n"));
   EXPECT_THAT(grit(folder.path(), isa, {"plugins"}).out,
-              AllOf(HasSubstr(" (-march=" + isa + ")\n"), HasSubstr(INSTALLED + isa + "/contacts/linear-rolling.so"),
+              AllOf(HasSubstr(" (-march=" + isa + ")\n"), HasSubstr(INSTALLED + isa + "/contacts/" LAW ".so"),
                     Not(HasSubstr(INSTALLED + not_chosen + "/"))));
 }
 
 TEST_P(Chosen, IsWhatTheDynamicLinkerLoads) {
-  folder.write("two.json", two_grains);
+  folder.write("two.json", scene());
   const auto outcome =
       shell(folder.path(), "GRIT_ISA=" + isa +
                                " LD_DEBUG=files LD_DEBUG_OUTPUT=loaded '" GRIT_BINARY "' run two.json && cat loaded.*");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("calling init: " INSTALLED + isa + "/libgrit.so"),
-                                 HasSubstr("calling init: " INSTALLED + isa + "/contacts/linear-rolling.so"),
+                                 HasSubstr("calling init: " INSTALLED + isa + "/contacts/" LAW ".so"),
                                  HasSubstr("calling init: " INSTALLED + isa + "/probes/packing.so"),
                                  Not(HasSubstr(INSTALLED + not_chosen + "/"))));
 }
@@ -93,8 +100,7 @@ TEST_P(Chosen, IsWhatTheLoopOfTheLawIsMadeOf) {
   const auto has = [&](const char* text) { return tag.find(text) != std::string::npos; };
   const std::string widest = has("v4") || has("avx512f") ? "zmm" : has("v3") || has("avx") ? "ymm" : "xmm";
   for (const auto& registers : {"lanes", widest.c_str()}) {
-    const auto check =
-        shell(folder.path(), CHECK_LOOPS " '" INSTALLED + isa + "/contacts/linear-rolling.so' " + registers);
+    const auto check = shell(folder.path(), CHECK_LOOPS " '" INSTALLED + isa + "/contacts/" LAW ".so' " + registers);
     EXPECT_EQ(check.status, 0) << registers << '\n' << check.err;
   }
 }
