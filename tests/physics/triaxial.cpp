@@ -24,7 +24,7 @@ Compressed compressed(const std::vector<std::string>& sets) {
                                "/scenario/preparation_inertial_number=6e-3", "/scenario/void_ratio=0.65"};
   all.insert(all.end(), sets.begin(), sets.end());
   Compressed curves;
-  run_to_the_end("sims/triaxial/quick.json", all, curves);
+  run_to_the_end("sims/triaxial/quick.json", with_long_steps(all), curves);
   return curves;
 }
 
@@ -51,9 +51,8 @@ TEST(Triaxial, StartsFromTheSameStressOnAllSidesAndKeepsTheLateralOne) {
 // grains; small specimens scatter about it. Frictionless grains come to rest at a void ratio of 0.59 to 0.60 only.
 TEST(Triaxial, FrictionlessGrainsBearNextToNoDeviator) {
   // Without friction they are only stable in random close packing, e = 0.56.
-  const Compressed frictionless =
-      compressed({"/scenario/size=[60e-3,60e-3,60e-3]", "/scenario/friction_angle=0",
-                  "/scenario/compaction_friction_angle=0", "/scenario/void_ratio=0.56"});
+  const Compressed frictionless = compressed({"/scenario/size=[60e-3,60e-3,60e-3]", "/scenario/friction_angle=0",
+                                              "/scenario/compaction_friction_angle=0", "/scenario/void_ratio=0.56"});
   verify("friction angle of 1650 grains without friction [deg], error absolute",
          frictionless.mean("friction_angle", 0.3, 1), 5.76, 3, 1);
 }
@@ -76,7 +75,8 @@ Course course(const std::string& file, int packings, const std::vector<std::stri
   std::vector<double> angles(windows), strains(windows);
   for (int seed = 1; seed <= packings; ++seed) {
     Curves one;
-    std::vector<std::string> sets = more;
+    std::vector<std::string> sets = with_long_steps(more);
+    sets.push_back("/scenario/preparation_inertial_number=6e-3");
     sets.push_back("/scenario/seed=" + std::to_string(seed));
     run_to_the_end("sims/triaxial/" + file, sets, one);
     for (std::size_t i = 0; i < windows; ++i) {

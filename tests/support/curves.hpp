@@ -46,6 +46,13 @@ struct Curves : Recorder {
   std::vector<std::vector<std::string>> names_;
 };
 
+/// Time steps as long as in docs/evidence/silos.md, for quasi-static tests in which impacts are of no account, and no
+/// energy balance: half of the time.
+inline std::vector<std::string> with_long_steps(std::vector<std::string> sets) {
+  sets.insert(sets.end(), {"/time_step/safety=0.95", "/time_step/steps_per_impact=4", "/probes/energy=null"});
+  return sets;
+}
+
 /// Runs a description of the repository with `sets` ("/pointer=value") to its end on two threads.
 inline void run_to_the_end(const std::string& file, const std::vector<std::string>& sets, Curves& curves) {
   Simulation simulation = recorded(load_scene(std::string(GRIT_SOURCE_DIR) + "/" + file, sets, installed()), curves, 2);
