@@ -242,8 +242,9 @@ TEST(References, OfADescriptionStandBesideClosedForms) {
 
 /// A small direct shear test with these probes as it is sheared; frames ask them for their fields too.
 Simulation sheared(const std::map<std::string, std::string>& probes) {
-  Document document = load_document(sims_folder / "direct-shear/quick.json",
-                                    {"/scenario/width=6e-3", "/scenario/height=4e-3"}, registry());
+  Document document = load_document(
+      sims_folder / "direct-shear/quick.json",
+      {"/scenario/width=6e-3", "/scenario/height=4e-3", "/scenario/preparation_inertial_number=0.03"}, registry());
   document.set("/probes={}");
   for (const auto& [type, settings] : probes)
     document.set("/probes/" + type + "={\"type\": \"" + type + R"(", "every_steps": 20, "stages": ["shear"])" +
