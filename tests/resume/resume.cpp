@@ -29,13 +29,13 @@ constexpr auto falling = R"({
   "walls": {"box": {"type": "box", "low": [0, 0, 0], "high": ["10 mm", "10 mm", "30 mm"], "open": ["z_high"], "material": "sand"}},
   "engines": {"gravity": {"type": "gravity"}, "damping": {"type": "local-damping", "coefficient": 0.05}},
   "stages": [
-    {"name": "fall", "until": {"type": "steps", "value": 400000}, "limit": "10 h"},
-    {"name": "on", "until": {"type": "steps", "value": 40000}, "limit": "10 h"}],
+    {"name": "fall", "until": {"type": "steps", "value": 200000}, "limit": "10 h"},
+    {"name": "on", "until": {"type": "steps", "value": 20000}, "limit": "10 h"}],
   "probes": {
-    "packing": {"type": "packing", "every_steps": 5000},
-    "energy": {"type": "energy", "every_steps": 7000},
-    "force-chains": {"type": "force-chains", "every_steps": 7700}},
-  "output": {"frames": {"every_steps": 9000, "formats": ["vtk", "lammps-dump"]}, "checkpoint_every": 0, "summary": ["energy/friction"],
+    "packing": {"type": "packing", "every_steps": 2500},
+    "energy": {"type": "energy", "every_steps": 3500},
+    "force-chains": {"type": "force-chains", "every_steps": 3850}},
+  "output": {"frames": {"every_steps": 4500, "formats": ["vtk", "lammps-dump"]}, "checkpoint_every": 0, "summary": ["energy/friction"],
              "picture": {"x": "packing/time", "y": ["packing/coordination_number"], "color": "speed"}}
 }
 )";
