@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace grit::facts_tests {
@@ -38,6 +39,55 @@ TEST(Facts, ReportTheCostOfARun) {
   EXPECT_EQ(fact(facts, "run time").value, "75 s");
   EXPECT_EQ(fact(facts, "run time").note, "1 thread");
   EXPECT_EQ(fact(facts, "speed").value, "12.5 M");
+}
+
+/// A run of two stages, the second from 0.1 s, with the probe "probe" and its channel "angle" [rad].
+RunResults run_that_found(const std::vector<double>& angles, const Description& output) {
+  std::vector<double> time, strain;
+  for (std::size_t i = 0; i < angles.size(); ++i)
+    time.push_back(0.1 + static_cast<double>(i) * 1e-3), strain.push_back(static_cast<double>(i) * 1e-4);
+  RunResults run = run_with({{"status", "done"},
+                             {"stages", {{{"name", "prepare"}, {"time", 0.1}}, {{"name", "shear"}, {"time", 9.0}}}},
+                             {"description", {{"output", output}}}},
+                            {{"time", time}, {"strain", strain}, {"angle", angles}});
+  run.probes.back().channels[0].sampled.unit = "s", run.probes.back().channels[2].sampled.unit = "rad";
+  return run;
+}
+const Description of_the_angle = {{"summary", {"probe/angle"}},
+                                  {"picture", {{"x", "probe/strain"}, {"y", {"probe/angle"}}}}};
+
+TEST(Facts, ReportWhatWasFoundWithItsError) {
+  const double degree = M_PI / 180;
+  std::vector<double> angles(400, 30 * degree);
+  angles[80] = 41 * degree;
+  for (std::size_t part = 0; part < 5; ++part)  // of the last 40, with means of 32 to 36 degrees
+    for (std::size_t i = 0; i < 8; ++i)
+      angles[360 + 8 * part + i] = (32 + static_cast<double>(part) + (i % 2 == 0 ? 3 : -3)) * degree;
+  const auto facts = result_facts(run_that_found(angles, of_the_angle));
+  ASSERT_EQ(facts.size(), 1u) << "once, though the summary and the picture have it";
+  EXPECT_EQ(facts[0].name, "probe: angle");
+  EXPECT_EQ(facts[0].value, "34.0 ± 0.7°") << "√(10 / 20)";
+  EXPECT_EQ(facts[0].note, "mean of the last tenth of the last stage; largest 41° at strain 0.008");
+
+  for (double& angle : angles) angle = 30 * degree + (angle - 30 * degree) / 5;
+  EXPECT_EQ(fact(result_facts(run_that_found(angles, of_the_angle)), "probe: angle").value, "30.80 ± 0.14°");
+}
+
+TEST(Facts, ReportTheLastValueOfFewSamples) {
+  const auto facts = result_facts(run_that_found({0.5, -0.75, 0.25}, {{"summary", {"probe/angle"}}}));
+  ASSERT_EQ(facts.size(), 1u);
+  EXPECT_EQ(facts[0].value, "14.32°");
+  EXPECT_EQ(facts[0].note, "at the end; largest -42.97° at time 101 ms");
+}
+
+TEST(Facts, ReportNothingThatWasNotFound) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const Description others = {{"summary", {"probe/angle", "angle", "probe/none", "none/angle", 3, nullptr}},
+                              {"picture", {{"x", 3}, {"y", "probe/angle"}}}};
+  EXPECT_TRUE(result_facts(run_that_found({nothing, nothing}, others)).empty());
+  EXPECT_EQ(result_facts(run_that_found({1, nothing}, others)).size(), 1u);
+  EXPECT_TRUE(result_facts(run_that_found({}, others)).empty());
+  EXPECT_TRUE(result_facts(run_that_found({1}, Description())).empty());
 }
 
 TEST(Facts, ReportTheReliabilityOfARun) {

@@ -3,11 +3,13 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include "format/duration.hpp"
 #include "format/number.hpp"
+#include "format/symbols.hpp"
 
 namespace grit {
 namespace {
@@ -93,7 +95,97 @@ std::optional<double> least_modulus(const RunResults& run) {
   return least;
 }
 
+/// The channels of the summary, then those of the picture: "probe/channel".
+std::vector<std::string> curves_asked_for(const RunResults& run) {
+  constexpr std::size_t most = 12;
+  std::vector<std::string> all;
+  for (const char* pointer : {"/description/output/summary", "/description/output/picture/y"})
+    if (const Description& names = run.at(pointer); names.is_array())
+      for (const Description& name : names)
+        if (name.is_string() && all.size() < most && std::ranges::find(all, name.get<std::string>()) == all.end())
+          all.push_back(name.get<std::string>());
+  return all;
+}
+
+/// Finite values of a channel in the last stage, and where they are sampled.
+struct LastStage {
+  std::vector<double> values, places;
+};
+
+LastStage in_last_stage(const ProbeSeries& probe, const ProbeSeries::Channel& channel,
+                        const ProbeSeries::Channel& against, double from) {
+  LastStage found;
+  const ProbeSeries::Channel* const time = probe.channel("time");
+  const std::vector<double>& values = channel.sampled.values;
+  if (time == nullptr || channel.width() != 1 || against.width() != 1) return found;
+  const std::size_t samples = std::min({values.size(), time->sampled.values.size(), against.sampled.values.size()});
+  for (std::size_t i = 0; i < samples; ++i)
+    if (time->sampled.values[i] >= from && std::isfinite(values[i]))
+      found.values.push_back(values[i]), found.places.push_back(against.sampled.values[i]);
+  return found;
+}
+
+/// A mean and its standard error.
+struct Average {
+  double mean = 0;
+  std::optional<double> error{};
+};
+
+/// Over the last tenth. Samples that follow each other are alike, so that the error is that of means of parts. With few
+/// samples the last one.
+Average average_at_the_end(const std::vector<double>& values) {
+  constexpr std::size_t parts = 5, least_in_part = 4;
+  const std::size_t in_part = values.size() / (10 * parts);
+  if (in_part < least_in_part) return {values.back()};
+  std::array<double, parts> means{};
+  for (std::size_t i = 0; i < parts * in_part; ++i)
+    means[i / in_part] += values[values.size() - parts * in_part + i] / static_cast<double>(in_part);
+  double mean = 0, squares = 0;
+  for (const double part : means) mean += part / parts;
+  for (const double part : means) squares += (part - mean) * (part - mean);
+  return {mean, std::sqrt(squares / (parts * (parts - 1)))};
+}
+
+/// "34.1 ± 0.4 kPa", to one digit of the error, or two if it begins with 1.
+std::string written(const Average& value, const ReadableUnit& shown) {
+  const std::string unit = shown.unit == "1" || shown.unit.empty() ? "" : shown.unit == "°" ? "°" : ' ' + shown.unit;
+  const double mean = shown.factor * value.mean, error = shown.factor * value.error.value_or(0);
+  if (!(error > 1e-6 * std::abs(mean))) return fmt::format("{:.4g}{}", mean, unit);
+  const double exponent = std::floor(std::log10(error));
+  const int decimals = static_cast<int>(error < 2 * std::pow(10, exponent) ? 1 - exponent : -exponent);
+  if (decimals < 0) return fmt::format("{:.3g} ± {:.1g}{}", mean, error, unit);
+  return fmt::format("{:.{}f} ± {:.{}f}{}", mean, decimals, error, decimals, unit);
+}
+
 }  // namespace
+
+std::vector<Fact> result_facts(const RunResults& run) {
+  std::vector<Fact> facts;
+  const Description& abscissa = run.at("/description/output/picture/x");
+  for (const std::string& curve : curves_asked_for(run)) {
+    const std::size_t slash = curve.find('/');
+    const auto probe = std::ranges::find(run.probes, curve.substr(0, slash), &ProbeSeries::name);
+    if (slash == std::string::npos || probe == run.probes.end()) continue;
+    const ProbeSeries::Channel *const channel = probe->channel(curve.substr(slash + 1)),
+                                      *against = probe->channel("time");
+    if (channel == nullptr || against == nullptr) continue;
+    if (abscissa.is_string() && abscissa.get<std::string>().starts_with(probe->name + '/'))
+      if (const auto* const x = probe->channel(abscissa.get<std::string>().substr(probe->name.size() + 1))) against = x;
+    const LastStage last = in_last_stage(*probe, *channel, *against, last_stage_began(run));
+    if (last.values.empty()) continue;
+    const auto size = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    const auto largest = static_cast<std::size_t>(std::ranges::max_element(last.values, size) - last.values.begin());
+    const ReadableUnit shown = readable(channel->sampled.unit, std::abs(last.values[largest])),
+                       shown_place = readable(against->sampled.unit, std::abs(last.places[largest]));
+    const Average end = average_at_the_end(last.values);
+    facts.push_back(
+        {channel_label(probe->name, channel->name), written(end, shown),
+         fmt::format("{}; largest {} at {} {}", end.error ? "mean of the last tenth of the last stage" : "at the end",
+                     written({last.values[largest]}, shown), against->label(),
+                     written({last.places[largest]}, shown_place))});
+  }
+  return facts;
+}
 
 std::string status_of(const RunResults& run) {
   const Description& status = run.at("/status");

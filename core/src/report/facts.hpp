@@ -15,6 +15,10 @@ struct Fact {
   std::string in_line{};  ///< in a line of text: "37 ms simulated"; may be empty
 };
 
+/// What was found: for each scalar channel of /output/summary and of the picture its value at the end of the last
+/// stage, and the largest one with its abscissa. With enough samples the mean of the last tenth ± its standard error.
+std::vector<Fact> result_facts(const RunResults& run);
+
 /// Size and cost of the run, as far as the results contain them.
 std::vector<Fact> cost_facts(const RunResults& run);
 

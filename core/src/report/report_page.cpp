@@ -30,6 +30,11 @@ constexpr const char* policy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
     "script-src 'unsafe-inline' 'unsafe-eval'; img-src data: blob:; {}base-uri 'none'; form-action 'none'\">\n";
 
+constexpr std::string_view what_errors_are =
+    "<p class=\"note\">± is the standard error of the mean in time, of this packing. Packings differ by more: a study "
+    "of "
+    "several seeds says by how much.</p>\n";
+
 std::string text_at(const RunResults& run, const std::string& pointer) {
   const Description& found = run.at(pointer);
   return found.is_string() ? found.get<std::string>() : found.is_null() ? "" : found.dump();
@@ -179,13 +184,17 @@ std::string head_of(const std::vector<RunResults>& runs, const std::vector<doubl
     const RunResults& run = runs[0];
     html += "<p class=\"provenance\">" + badge(run) + ' ' + escaped(provenance(run)) + "</p>\n" + message_of(run);
     html += cards(cost_facts(run));
+    if (const auto results = cards(result_facts(run)); !results.empty())
+      html +=
+          "<h2>Results</h2>\n" + results + std::string(results.find(" ± ") != std::string::npos ? what_errors_are : "");
     if (const auto trust = cards(trust_facts(run, diameters[0])); !trust.empty())
       html += "<h2>Reliability</h2>\n" + trust;
     return html + details(run) + "</header>\n";
   }
   std::vector<std::vector<Fact>> facts;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    facts.push_back(cost_facts(runs[i]));
+    facts.push_back(result_facts(runs[i]));
+    std::ranges::move(cost_facts(runs[i]), std::back_inserter(facts.back()));
     std::ranges::move(trust_facts(runs[i], diameters[i]), std::back_inserter(facts.back()));
   }
   html += facts_table(runs, facts);
