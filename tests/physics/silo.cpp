@@ -98,10 +98,10 @@ Raised raised(int times, int fillings = 2) {
   for (int seed = 1; seed <= fillings; ++seed) {
     Raised silo;
     run_to_the_end("sims/round-silo/quick.json",
-                   {"/bodies/sand/source/count=" + std::to_string(std::lround(2500 * more)),
-                    "/bodies/sand/source/high/2=" + std::to_string(95e-3 * more),
-                    "/walls/wall/end/2=" + std::to_string(0.15 * more), "/seed=" + std::to_string(seed),
-                    "/guards/travel=0.1"},  // grains fall from the height of the silo
+                   with_long_steps({"/bodies/sand/source/count=" + std::to_string(std::lround(2500 * more)),
+                                    "/bodies/sand/source/high/2=" + std::to_string(95e-3 * more),
+                                    "/walls/wall/end/2=" + std::to_string(0.15 * more), "/seed=" + std::to_string(seed),
+                                    "/guards/travel=0.1"}),  // grains fall from the height of the silo
                    silo);
     for (std::size_t i = 0; i < Raised::most; ++i) {
       mean.vertical[i] += silo.vertical[i] / fillings;
@@ -173,11 +173,12 @@ Plane plane(double roughness) {
     Curves silo;
     run_to_the_end(
         "sims/silo-quasistatic/quick-rough.json",
-        {"/scenario/width=12e-3", "/scenario/depth=5e-3", "/scenario/height=36e-3", "/scenario/settlement=5e-4",
-         "/scenario/roughness=" + std::to_string(roughness), "/scenario/seed=" + std::to_string(seed),
-         "/time_step/safety=0.95", "/time_step/steps_per_impact=4",  // as in docs/evidence/silos.md
-         R"(/probes/middle={"type": "void-ratio", "stages": ["settle"], "region_low": [3e-3, 0.75e-3, 6e-3],)"
-         R"( "region_high": [9e-3, 4.25e-3, 24e-3]})"},
+        with_long_steps(
+            {"/scenario/width=12e-3", "/scenario/depth=5e-3", "/scenario/height=36e-3", "/scenario/settlement=5e-4",
+             "/scenario/roughness=" + std::to_string(roughness), "/scenario/seed=" + std::to_string(seed),
+             "/scenario/wall_segments=1",
+             R"(/probes/middle={"type": "void-ratio", "stages": ["settle"], "region_low": [3e-3, 0.75e-3, 6e-3],)"
+             R"( "region_high": [9e-3, 4.25e-3, 24e-3]})"}),
         silo);
     const auto& way = silo.channel.at("settlement");
     const auto moved = static_cast<std::size_t>(
