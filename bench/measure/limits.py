@@ -11,6 +11,7 @@ from . import disassembly, machine
 from .machine import Complaint, DISTURBED
 
 LINE = 64  # bytes
+TRIAL_SECONDS = 0.01  # of a kernel
 # A body's rows of position, velocity and spin; its sum of forces and moments.
 BODY, SUM = 3 * 32, LINE
 # Two indices of a contact, and a bit for contact.
@@ -129,7 +130,7 @@ def read(path):
             if one.get('run_type') != 'aggregate'}
 
 
-def kernels(program, pattern, cores=1):
+def kernels(program, pattern, cores=1, short=False):
     """(name → result, cores used by others) of the kernels that match `pattern`, on `cores` cores."""
     built = Path(program).parent / 'bench_kernels'
     if not built.is_file():
@@ -138,7 +139,8 @@ def kernels(program, pattern, cores=1):
     with tempfile.TemporaryDirectory(prefix='grit-kernels-') as folder:
         out = Path(folder) / 'kernels.json'
         try:
-            done = machine.run([built, f'--benchmark_filter={pattern}', '--benchmark_min_time=0.5', f'--benchmark_out={out}'], cores,
+            done = machine.run([built, f'--benchmark_filter={pattern}', f'--benchmark_min_time={TRIAL_SECONDS if short else 0.5}',
+                                f'--benchmark_out={out}'], cores,
                                folder)
         except subprocess.CalledProcessError as error:
             raise Complaint(f'{built}: {machine.reason(error)}') from error
@@ -149,7 +151,7 @@ def kernels(program, pattern, cores=1):
     return times, done.others
 
 
-def measured(program):
+def measured(program, short=False):
     """(limits, their text for the head of the table); None if the kernels are not built beside the program, fail, or have no
     time left."""
     kernels = Path(program).parent / 'bench_kernels'
@@ -159,7 +161,7 @@ def measured(program):
         out = Path(folder) / 'kernels.json'
         try:
             done = machine.run([kernels, '--benchmark_filter=^machine/|^contacts/linear-rolling/10000$',
-                                '--benchmark_min_time=0.2', f'--benchmark_out={out}'], 1, folder)
+                                f'--benchmark_min_time={TRIAL_SECONDS if short else 0.2}', f'--benchmark_out={out}'], 1, folder)
             limits = of_kernels(read(out))
         except (subprocess.CalledProcessError, machine.OutOfTime, OSError, ValueError, KeyError) as error:
             if isinstance(error, KeyError):
