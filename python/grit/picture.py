@@ -1,5 +1,6 @@
 """Pictures in notebooks."""
 
+import base64
 import pathlib
 
 from .errors import FileError
@@ -11,8 +12,10 @@ class Picture:
     def __init__(self, svg):
         self.svg = svg
 
-    def _repr_svg_(self):
-        return self.svg
+    def _repr_html_(self):
+        """As an image: notebooks that are shared or exported drop most elements of an SVG that is part of the page."""
+        data = base64.b64encode(self.svg.encode()).decode()
+        return f'<img alt="grains" src="data:image/svg+xml;base64,{data}">'
 
     def __repr__(self):
         return "<picture; notebooks show it, save(path) writes it>"

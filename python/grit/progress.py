@@ -3,6 +3,7 @@
 import functools
 import sys
 import time
+import warnings
 
 _LOG_EVERY = 10  # s, where standard error is no terminal
 
@@ -67,7 +68,9 @@ class Bar:
 def make():
     if in_notebook():
         try:
-            from tqdm.auto import tqdm
+            with warnings.catch_warnings():  # of tqdm, that ipywidgets is missing: it draws a bar of text then
+                warnings.simplefilter("ignore")
+                from tqdm.auto import tqdm
             return Bar(tqdm)
         except ImportError:
             pass

@@ -4,6 +4,7 @@
 usage: test_simulation.py GRIT     the module is that of GRIT's build folder
 """
 
+import base64
 import copy
 import gc
 import pathlib
@@ -317,7 +318,8 @@ class World(unittest.TestCase):
     def test_pictures(self):
         picture = self.sim.show("yz", color="radius")
         self.assertGreater(picture.svg.count("<circle"), 10)
-        self.assertEqual((picture._repr_svg_()[:4], "48 bodies" in picture.svg), ("<svg", True))
+        shown = base64.b64decode(picture._repr_html_().partition("base64,")[2].partition('"')[0]).decode()
+        self.assertEqual((shown, shown[:4], "48 bodies" in shown), (picture.svg, "<svg", True))
         with tempfile.TemporaryDirectory() as folder:
             picture.save(pathlib.Path(folder) / "grains.svg")
             self.assertEqual((pathlib.Path(folder) / "grains.svg").read_text(), picture.svg)

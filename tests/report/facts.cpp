@@ -77,7 +77,14 @@ TEST(Facts, ReportTheLastValueOfFewSamples) {
   const auto facts = result_facts(run_that_found({0.5, -0.75, 0.25}, {{"summary", {"probe/angle"}}}));
   ASSERT_EQ(facts.size(), 1u);
   EXPECT_EQ(facts[0].value, "14.32°");
-  EXPECT_EQ(facts[0].note, "at the end; largest -42.97° at time 101 ms");
+  EXPECT_EQ(facts[0].note, "at the end; largest -42.97° at time 0.101 s");
+}
+
+TEST(Facts, ReportOneSampleWithItsAbscissa) {
+  const auto facts = result_facts(run_that_found({0.25}, of_the_angle));
+  ASSERT_EQ(facts.size(), 1u);
+  EXPECT_EQ(facts[0].value, "14.32°");
+  EXPECT_EQ(facts[0].note, "one sample in the last stage, at strain 0");
 }
 
 TEST(Facts, ReportNothingThatWasNotFound) {

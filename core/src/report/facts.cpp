@@ -178,11 +178,13 @@ std::vector<Fact> result_facts(const RunResults& run) {
     const ReadableUnit shown = readable(channel->sampled.unit, std::abs(last.values[largest])),
                        shown_place = readable(against->sampled.unit, std::abs(last.places[largest]));
     const Average end = average_at_the_end(last.values);
-    facts.push_back(
-        {channel_label(probe->name, channel->name), written(end, shown),
-         fmt::format("{}; largest {} at {} {}", end.error ? "mean of the last tenth of the last stage" : "at the end",
-                     written({last.values[largest]}, shown), against->label(),
-                     written({last.places[largest]}, shown_place))});
+    const std::string place = against->label() + ' ' + written({last.places[largest]}, shown_place);
+    facts.push_back({channel_label(probe->name, channel->name), written(end, shown),
+                     last.values.size() == 1
+                         ? "one sample in the last stage, at " + place
+                         : fmt::format("{}; largest {} at {}",
+                                       end.error ? "mean of the last tenth of the last stage" : "at the end",
+                                       written({last.values[largest]}, shown), place)});
   }
   return facts;
 }
