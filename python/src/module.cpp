@@ -124,7 +124,8 @@ PYBIND11_MODULE(_grit, module) {
            })
       .def("remove_engine", &Driver::remove_engine);
   simulation.def("picture", [](Driver& driver, const std::string& view, const std::string& color) {
-    return picture_of(driver.world(), view, color);
+    const World& world = driver.world();
+    return picture_of(driver.simulation().parts().opened->scene.description->title, world, view, color);
   });
   bind_world(simulation);
   module.def("read_checkpoint", &read_saved);

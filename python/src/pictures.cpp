@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "format/duration.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
 #include "output/grain_view.hpp"
@@ -12,13 +13,15 @@
 
 namespace grit::python {
 
-std::string picture_of(const World& world, const std::string& view, const std::string& color) {
+std::string picture_of(const std::string& title, const World& world, const std::string& view,
+                       const std::string& color) {
   std::vector<WallShape> walls;
   for (const WallView& wall : world.walls())
     if (wall.geometry != nullptr) walls.push_back({.name = wall.name, .triangles = wall.geometry->triangles()});
   Picture picture;
-  picture.title = world.stage();
-  picture.facts = std::to_string(world.positions().size()) + " bodies at " + number(world.time()) + " s";
+  picture.title = title;
+  picture.facts = grouped(world.positions().size()) + " bodies" +
+                  (world.stage().empty() ? "" : "  ·  stage " + world.stage()) + "  ·  " + written_time(world.time());
   picture.grains = grain_view(world, walls, view, color);
   return draw(picture);
 }

@@ -320,6 +320,7 @@ class World(unittest.TestCase):
         self.assertGreater(picture.svg.count("<circle"), 10)
         shown = base64.b64decode(picture._repr_html_().partition("base64,")[2].partition('"')[0]).decode()
         self.assertEqual((shown, shown[:4], "48 bodies" in shown), (picture.svg, "<svg", True))
+        self.assertIn("grains that fall", shown)
         with tempfile.TemporaryDirectory() as folder:
             picture.save(pathlib.Path(folder) / "grains.svg")
             self.assertEqual((pathlib.Path(folder) / "grains.svg").read_text(), picture.svg)
