@@ -148,13 +148,12 @@ class Faults(unittest.TestCase):
         self.assertEqual(sim.step, 7)
 
     def test_an_exception_at_the_first_instant(self):
-        sim = grit.Simulation(scene())
-        sim.engine("broken")(lambda: 1 / 0)
-        for call in (sim.check, lambda: sim.bodies.force, lambda: sim.set("/materials/sand/friction_angle", 0.1)):
+        for call in (lambda sim: sim.check(), lambda sim: sim.bodies.force, lambda sim: sim.save(), lambda sim: sim.run(1),
+                     lambda sim: sim.set("/materials/sand/friction_angle", 0.1)):
+            sim = grit.Simulation(scene())
+            sim.engine("broken")(lambda: 1 / 0)
             with self.assertRaises(ZeroDivisionError):
-                call()
-                self.fail("no exception")
-            break
+                call(sim)
 
     def test_ctrl_c_ends_the_run_after_the_step(self):
         sim = grit.Simulation(long_scene())
