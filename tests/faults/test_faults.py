@@ -4,8 +4,10 @@ campaign   each fault of scripts/faults.py once, in short scenes, with a fixed s
 self-test  what scripts/faults.py finds in a grit that is wrong, and what it writes
 restarts   scripts/restarts.py with a scene of each kind
 """
+import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -84,6 +86,16 @@ class WrongPrograms(unittest.TestCase):
     def test_nothing_is_found_where_nothing_is_wrong(self):
         status, text = self.right
         self.assertEqual(self.counts('SIGTERM', status, text), (0, 0, 0), text)
+
+    def test_runs_that_have_become_faster_are_disturbed(self):
+        with tempfile.TemporaryDirectory() as place:
+            copy = shutil.copytree(self.undisturbed[1], place, dirs_exist_ok=True)
+            file = Path(copy, 'undisturbed/deforming-cell/facts.json')
+            facts = json.loads(file.read_text(encoding='utf-8'))
+            file.write_text(json.dumps(facts | {'seconds': 20 * facts['seconds']}), encoding='utf-8')
+            status, text = self.run_broken('not at all', 'SIGTERM', '--undisturbed', copy)
+        self.assertEqual(self.counts('SIGTERM', status, text), (0, 0, 0), text)
+        self.assertIn('| SIGTERM | 4 |', text)
 
     def test_a_dropped_sample(self):
         (lost, bits, _), text = self.row('sample', 'SIGTERM')
