@@ -227,6 +227,10 @@ class NotApplied(Exception):
     """The run had ended before the fault, or never met it."""
 
 
+class TooLate(NotApplied):
+    """The run had ended."""
+
+
 @dataclass
 class Prepared:
     """A scene, and what its undisturbed runs took."""
@@ -332,7 +336,7 @@ def killed(case):
     for again in range(case.random.choice((1, 1, 2, 3))):
         run = case.resume() if again else case.start()
         if run.ends_within(case.moment()) and again == 0:
-            raise NotApplied
+            raise TooLate
         run.send(signal.SIGKILL)
         case.expect(run, (-signal.SIGKILL, DONE))
         case.examine()
@@ -378,13 +382,13 @@ def interrupted(case, *signals, later=0.0):
     if resumed:                                          # the one that is interrupted continues another
         first = case.start()
         if first.ends_within(case.moment()):
-            raise NotApplied
+            raise TooLate
         first.send(signal.SIGTERM)
         case.status_of(first)
     before = stamp_of(case.out)
     run = case.resume() if resumed else case.start()
     if run.ends_within(case.moment()):
-        raise NotApplied
+        raise TooLate
     run.send(signals[0])
     for one in signals[1:]:
         run.ends_within(later)
@@ -407,7 +411,7 @@ def fails_in(case, call, error, how):
     if resumed:
         first = case.start()
         if first.ends_within(case.moment()):
-            raise NotApplied
+            raise TooLate
         first.send(signal.SIGTERM)
         case.status_of(first)
         case.examine()
@@ -449,7 +453,7 @@ def out_of_memory(case):
     else:
         run = case.start()
         if run.ends_within(case.moment()):
-            raise NotApplied
+            raise TooLate
         most = run.address_space('VmSize') + case.random.choice((0, 1 << 16, 1 << 20))
         try:
             resource.prlimit(run.process.pid, resource.RLIMIT_AS, (most, most))
@@ -466,7 +470,7 @@ def stopped(case):
     """A run that is halted at a moment, so that its folder can be changed at once."""
     run = case.start()
     if run.ends_within(case.moment()):
-        raise NotApplied
+        raise TooLate
     run.send(signal.SIGSTOP)
     os.waitid(os.P_PID, run.process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
     return run
@@ -625,13 +629,13 @@ class Campaign:
         case = Case(self, scene, fault, self.place / f'{re.sub(r"[^a-z0-9]+", "-", fault.lower())}-{index}', chance, tally.late)
         case.folder.mkdir()
         began = time.monotonic()
-        applied = True
+        applied, late = True, 0
         try:
             FAULTS[fault](case)
-        except NotApplied:
+        except NotApplied as reason:
             applied = bool(case.failed)
-        tally.asked += 1
-        tally.late = 0 if applied else tally.late + 1
+            late = tally.late + 1 if isinstance(reason, TooLate) else 0
+        tally.asked, tally.late = tally.asked + 1, late
         tally.seconds += time.monotonic() - began
         if applied:
             tally.tried += 1
