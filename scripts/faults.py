@@ -14,7 +14,8 @@ folder. After a fault must hold:
   status  the exit status is as documented (grit --help), and the message names a file, a place in the description or a command
 
 Fault, scene and moment of a case follow from the seed. A case that fails keeps its folder, with the messages of its runs in log.txt.
---scale shortens all scenes. --undisturbed takes the undisturbed runs of a campaign that was kept. --markdown writes the table into PAGE, docs/evidence/reliability.md unless given; rows of other faults stay.
+--scale shortens all scenes. --undisturbed takes the undisturbed runs of a campaign that was kept. --markdown writes the table into
+PAGE, docs/evidence/reliability.md unless given; rows of other faults stay.
 
 Exit status: 0 all held; 1 some did not; 2 wrong use.
 """

@@ -196,7 +196,7 @@ class Simulation:
         mass: of these the time step must know. The same name again replaces the engine, remove(function) ends it.
         The function must give the same for the same instant, and not depend on the order of bodies. What it raises ends the simulation, as it is
         in the middle of a step; at Ctrl-C it is called again, and the run ends after the step. An engine is no part of the description: add it
-        again before resume(). Raises Error for the name of an engine of the description. Slow: engines of the description are 100 times faster.
+        again before resume(). Raises Error for the name of an engine of the description. Slow: engines of the description are much faster.
         """
         name = arguments.text("name", name, "wind")
         rates = arguments.not_negative("stiffness", stiffness), arguments.not_negative("damping", damping)

@@ -129,7 +129,8 @@ bool Driver::stops() {
 
 py::object Driver::owner() const {
   py::object alive = owner_ ? owner_() : py::none();
-  if (alive.is_none()) throw Error("the simulation of these arrays is no more; keep it as long as they are read");
+  if (alive.is_none())
+    throw Error("the simulation that these arrays belong to has been deleted; keep a reference to it");
   return alive;
 }
 
@@ -159,20 +160,23 @@ void Driver::act(const std::string& engine, std::span<Row> force, std::span<Row>
       rows[i] += Row{row(at, 0), row(at, 1), row(at, 2), 0};
     }
   };
-  for (bool again = false;; again = true) try {
+  const py::object simulation = owner();
+  for (bool again = false;; again = true) {
+    try {
       acts_ = true;
-      const auto added = owner().attr("_acted")(engine, force.size()).cast<py::tuple>();
+      const auto added = simulation.attr("_acted")(engine, force.size()).cast<py::tuple>();
       acts_ = false;
       arrays_.let_go();
       add(added[0], force), add(added[1], moment);
       return;
-    } catch (py::error_already_set& error) {
+    } catch (const py::error_already_set& error) {
       acts_ = false;
       arrays_.let_go();
-      const bool interrupts = !again && error.matches(PyExc_KeyboardInterrupt);
-      if (!raised_) raised_ = error;
-      if (!interrupts) throw Error("the engine \"" + engine + "\" raised an exception in the middle of a step");
+      raised_ = error;
     }
+    if (again || !raised_->matches(PyExc_KeyboardInterrupt))
+      throw Error("the engine \"" + engine + "\" raised an exception in the middle of a step");
+  }
 }
 
 void Driver::report(const Progress& now) {

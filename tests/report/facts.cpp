@@ -73,6 +73,14 @@ TEST(Facts, ReportWhatWasFoundWithItsError) {
   EXPECT_EQ(fact(result_facts(run_that_found(angles, of_the_angle)), "probe: angle").value, "30.80 ± 0.14°");
 }
 
+TEST(Facts, ReportLargeResultsInPlainDigits) {
+  std::vector<double> counts(400, 12000);
+  for (std::size_t i = 360; i < 400; ++i) counts[i] = 12345 + 60 * static_cast<double>((i - 360) / 8);
+  RunResults run = run_that_found(counts, of_the_angle);
+  run.probes.back().channels[2].sampled.unit = "1";
+  EXPECT_EQ(fact(result_facts(run), "probe: angle").value, "12470 ± 40") << "60 √(10 / 20) = 42";
+}
+
 TEST(Facts, ReportTheLastValueOfFewSamples) {
   const auto facts = result_facts(run_that_found({0.5, -0.75, 0.25}, {{"summary", {"probe/angle"}}}));
   ASSERT_EQ(facts.size(), 1u);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <memory>
 
+#include "counted_components.hpp"
 #include "grit/engine.hpp"
 #include "grit/error.hpp"
 #include "grit/simulation.hpp"
@@ -39,10 +40,7 @@ struct Lift final : Engine {
 Description floating() {
   Description d = description("linear-frictional", {{"density", 2500}}, {{{0, 0, 0}, 5e-3}});
   d["time_step"] = {{"value", dt}};
-  const auto stage = [](const char* name) {
-    return Description{{"name", name}, {"until", {{"type", "steps"}, {"value", 100}}}, {"limit", 1}};
-  };
-  d["stages"] = {stage("first"), stage("second")};
+  d["stages"] = Description::array({stage_of("first", 100), stage_of("second", 100)});
   return d;
 }
 SimulationOptions options() { return {.plugin_path = {GRIT_PLUGIN_DIR}}; }
@@ -125,7 +123,8 @@ TEST(AddedEngine, NeedsStateThatIsKept) {
   const auto lift = std::make_shared<Lift>(mass, BodyState::rotation);
   Simulation without(floating(), options());
   EXPECT_THAT([&] { without.set_engine("lift", lift); },
-              testing::ThrowsMessage<Error>(testing::HasSubstr("needs rotations, which are not kept")));
+              testing::ThrowsMessage<Error>(
+                  testing::HasSubstr("needs rotations, which this simulation does not keep; request this state")));
   SimulationOptions kept = options();
   kept.state = BodyState::rotation;
   Simulation with(floating(), kept);

@@ -51,7 +51,7 @@ std::string CurveSummary::text() const {
     const bool ends = !std::isnan(curve.last);
     if (!curve.any && ends) continue;  // never sampled
     const ReadableUnit shown = readable(curve.channel.unit, std::abs(curve.any ? curve.largest : curve.last));
-    const std::string unit = shown.unit == "1" ? "" : shown.unit == "°" ? shown.unit : ' ' + shown.unit;
+    const std::string unit = after_number(shown.unit);
     text << curve.channel.full_name() << ": ";
     if (curve.any) text << "peak " << shown.factor * curve.largest << unit << ", ";
     if (ends) text << "final " << shown.factor * curve.last << unit << '\n';

@@ -144,6 +144,10 @@ ReadableUnit readable(const std::string& unit, double largest) {
   return {1e6, written(*factors)};
 }
 
+std::string after_number(const std::string& unit) {
+  return unit.empty() || unit == "1" ? "" : unit == "°" ? unit : ' ' + unit;
+}
+
 std::string axis_title(const std::string& label, const std::string& unit) {
   return unit.empty() || unit == "1" ? label : label + " [" + unit + "]";
 }

@@ -16,6 +16,9 @@ struct ReadableUnit {
 };
 ReadableUnit readable(const std::string& unit, double largest);
 
+/// A unit as it follows a number: " kPa", "°"; empty for "1" or "".
+std::string after_number(const std::string& unit);
+
 /// "label [unit]", or the label alone for a unit of "1" or "".
 std::string axis_title(const std::string& label, const std::string& unit);
 

@@ -18,22 +18,6 @@
 namespace grit {
 namespace {
 
-/// A channel with its probe.
-struct Named {
-  const ProbeSeries* probe = nullptr;
-  const ProbeSeries::Channel* channel = nullptr;
-  bool is_scalar() const { return channel && channel->width() == 1; }
-  bool is(const std::string& full) const { return probe->name + '/' + channel->name == full; }
-};
-
-Named find(const RunResults& run, const std::string& name) {
-  const auto slash = name.find('/');
-  if (slash == std::string::npos) return {};
-  const auto probe = std::ranges::find(run.probes, name.substr(0, slash), &ProbeSeries::name);
-  if (probe == run.probes.end()) return {};
-  return {&*probe, probe->channel(name.substr(slash + 1))};
-}
-
 /// "probe/channel" of each.
 std::vector<std::string> curves_wanted(const RunResults& run) {
   std::vector<std::string> names;
@@ -48,16 +32,8 @@ std::vector<std::string> curves_wanted(const RunResults& run) {
   return names;
 }
 
-/// The abscissa of a curve.
-Named abscissa_of(const RunResults& run, const Named& y) {
-  const Description& wanted = run.at("/description/output/picture/x");
-  if (wanted.is_string())
-    if (const Named x = find(run, wanted.get<std::string>()); x.is_scalar()) return x;
-  return {y.probe, y.probe->channel("time")};
-}
-
 /// The points at which both were sampled.
-Curve curve_of(const std::string& name, const Named& x, const Named& y) {
+Curve curve_of(const std::string& name, const NamedChannel& x, const NamedChannel& y) {
   const auto *x_time = x.probe->channel("time"), *y_time = y.probe->channel("time");
   Curve curve{.name = name, .x = {}, .y = {}};
   if (!x_time || !y_time) return curve;
@@ -101,11 +77,11 @@ Curve drawn(const Reference& reference, const Panel& panel) {
 std::optional<Panel> panel_of(const std::string& wanted, std::span<const RunResults> runs,
                               const std::vector<std::vector<Reference>>& references) {
   std::optional<Panel> panel;
-  Named x;
+  NamedChannel x;
   for (const RunResults& run : runs) {
-    const Named y = find(run, wanted);
+    const NamedChannel y = run.find(wanted);
     if (!y.is_scalar()) continue;
-    const Named own = abscissa_of(run, y);
+    const NamedChannel own = run.abscissa_of(y);
     if (!own.channel) continue;
     if (!panel) {
       x = own;
@@ -156,7 +132,7 @@ std::vector<double> row(const SampledChannel& list, std::size_t sample) {
 std::string abscissa_at(const RunResults& run, double instant) {
   const Description& wanted = run.at("/description/output/picture/x");
   if (!wanted.is_string()) return "";
-  const Named x = find(run, wanted.get<std::string>());
+  const NamedChannel x = run.find(wanted.get<std::string>());
   const auto* time = x.is_scalar() && x.channel->name != "time" ? x.probe->channel("time") : nullptr;
   if (!time) return "";
   const auto &times = time->sampled.values, &values = x.channel->sampled.values;
@@ -167,7 +143,7 @@ std::string abscissa_at(const RunResults& run, double instant) {
     if (drawable(value)) largest = std::max(largest, std::abs(value));
   const auto [factor, unit] = readable(x.channel->sampled.unit, largest);
   const std::string number = short_number(values[after - 1] * factor);
-  return ": " + spelled(x.channel->name) + ' ' + number + (unit == "1" ? "" : (unit == "°" ? "" : " ") + unit);
+  return ": " + spelled(x.channel->name) + ' ' + number + after_number(unit);
 }
 
 /// A picture per probe, with a panel for each of its lists over such units.

@@ -112,16 +112,14 @@ struct LastStage {
   std::vector<double> values, places;
 };
 
-LastStage in_last_stage(const ProbeSeries& probe, const ProbeSeries::Channel& channel,
-                        const ProbeSeries::Channel& against, double from) {
+LastStage in_last_stage(const RunResults& run, const NamedChannel& curve, const ProbeSeries::Channel& against) {
   LastStage found;
-  const ProbeSeries::Channel* const time = probe.channel("time");
-  const std::vector<double>& values = channel.sampled.values;
-  if (time == nullptr || channel.width() != 1 || against.width() != 1) return found;
-  const std::size_t samples = std::min({values.size(), time->sampled.values.size(), against.sampled.values.size()});
-  for (std::size_t i = 0; i < samples; ++i)
-    if (time->sampled.values[i] >= from && std::isfinite(values[i]))
-      found.values.push_back(values[i]), found.places.push_back(against.sampled.values[i]);
+  const std::vector<double>&values = curve.channel->sampled.values,
+        &times = curve.probe->channel("time")->sampled.values, &places = against.sampled.values;
+  const double from = last_stage_began(run);
+  for (std::size_t i = 0; i < std::min({values.size(), times.size(), places.size()}); ++i)
+    if (times[i] >= from && std::isfinite(values[i]) && std::isfinite(places[i]))
+      found.values.push_back(values[i]), found.places.push_back(places[i]);
   return found;
 }
 
@@ -131,8 +129,8 @@ struct Average {
   std::optional<double> error{};
 };
 
-/// Over the last tenth. Samples that follow each other are alike, so that the error is that of means of parts. With few
-/// samples the last one.
+/// Over the last tenth, with the error from the means of parts, as consecutive samples are correlated. With few samples
+/// the last one.
 Average average_at_the_end(const std::vector<double>& values) {
   constexpr std::size_t parts = 5, least_in_part = 4;
   const std::size_t in_part = values.size() / (10 * parts);
@@ -148,38 +146,36 @@ Average average_at_the_end(const std::vector<double>& values) {
 
 /// "34.1 ± 0.4 kPa", to one digit of the error, or two if it begins with 1.
 std::string written(const Average& value, const ReadableUnit& shown) {
-  const std::string unit = shown.unit == "1" || shown.unit.empty() ? "" : shown.unit == "°" ? "°" : ' ' + shown.unit;
+  constexpr double many = 1e9;
+  const std::string unit = after_number(shown.unit);
   const double mean = shown.factor * value.mean, error = shown.factor * value.error.value_or(0);
   if (!(error > 1e-6 * std::abs(mean))) return fmt::format("{:.4g}{}", mean, unit);
-  const double exponent = std::floor(std::log10(error));
-  const int decimals = static_cast<int>(error < 2 * std::pow(10, exponent) ? 1 - exponent : -exponent);
-  if (decimals < 0) return fmt::format("{:.3g} ± {:.1g}{}", mean, error, unit);
-  return fmt::format("{:.{}f} ± {:.{}f}{}", mean, decimals, error, decimals, unit);
+  if (!(std::abs(mean) + error < many)) return fmt::format("{:.4g} ± {:.1g}{}", mean, error, unit);
+  const double decade = std::pow(10, std::floor(std::log10(error))), step = error < 2 * decade ? decade / 10 : decade;
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 0.5)));
+  return fmt::format("{:.{}f} ± {:.{}f}{}", step * std::round(mean / step), decimals, step * std::round(error / step),
+                     decimals, unit);
 }
 
 }  // namespace
 
 std::vector<Fact> result_facts(const RunResults& run) {
   std::vector<Fact> facts;
-  const Description& abscissa = run.at("/description/output/picture/x");
-  for (const std::string& curve : curves_asked_for(run)) {
-    const std::size_t slash = curve.find('/');
-    const auto probe = std::ranges::find(run.probes, curve.substr(0, slash), &ProbeSeries::name);
-    if (slash == std::string::npos || probe == run.probes.end()) continue;
-    const ProbeSeries::Channel *const channel = probe->channel(curve.substr(slash + 1)),
-                                      *against = probe->channel("time");
-    if (channel == nullptr || against == nullptr) continue;
-    if (abscissa.is_string() && abscissa.get<std::string>().starts_with(probe->name + '/'))
-      if (const auto* const x = probe->channel(abscissa.get<std::string>().substr(probe->name.size() + 1))) against = x;
-    const LastStage last = in_last_stage(*probe, *channel, *against, last_stage_began(run));
+  for (const std::string& name : curves_asked_for(run)) {
+    const NamedChannel curve = run.find(name);
+    if (!curve.is_scalar()) continue;
+    const auto* against = curve.probe->channel("time");
+    if (against == nullptr) continue;
+    if (const NamedChannel x = run.abscissa_of(curve); x.probe == curve.probe) against = x.channel;
+    const LastStage last = in_last_stage(run, curve, *against);
     if (last.values.empty()) continue;
     const auto size = [](double a, double b) { return std::abs(a) < std::abs(b); };
     const auto largest = static_cast<std::size_t>(std::ranges::max_element(last.values, size) - last.values.begin());
-    const ReadableUnit shown = readable(channel->sampled.unit, std::abs(last.values[largest])),
+    const ReadableUnit shown = readable(curve.channel->sampled.unit, std::abs(last.values[largest])),
                        shown_place = readable(against->sampled.unit, std::abs(last.places[largest]));
     const Average end = average_at_the_end(last.values);
     const std::string place = against->label() + ' ' + written({last.places[largest]}, shown_place);
-    facts.push_back({channel_label(probe->name, channel->name), written(end, shown),
+    facts.push_back({channel_label(curve.probe->name, curve.channel->name), written(end, shown),
                      last.values.size() == 1
                          ? "one sample in the last stage, at " + place
                          : fmt::format("{}; largest {} at {}",

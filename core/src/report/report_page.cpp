@@ -30,10 +30,12 @@ constexpr const char* policy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
     "script-src 'unsafe-inline' 'unsafe-eval'; img-src data: blob:; {}base-uri 'none'; form-action 'none'\">\n";
 
-constexpr std::string_view what_errors_are =
-    "<p class=\"note\">± is the standard error of the mean in time, of this packing. Packings differ by more: a study "
-    "of "
-    "several seeds says by how much.</p>\n";
+/// What "±" means, for a page that has it.
+std::string note_on_errors(const std::string& html) {
+  if (html.find(" ± ") == std::string::npos) return "";
+  return "<p class=\"note\">± is the standard error of the time average for this packing. Other packings may differ by "
+         "more; a study with several seeds shows by how much.</p>\n";
+}
 
 std::string text_at(const RunResults& run, const std::string& pointer) {
   const Description& found = run.at(pointer);
@@ -185,8 +187,7 @@ std::string head_of(const std::vector<RunResults>& runs, const std::vector<doubl
     html += "<p class=\"provenance\">" + badge(run) + ' ' + escaped(provenance(run)) + "</p>\n" + message_of(run);
     html += cards(cost_facts(run));
     if (const auto results = cards(result_facts(run)); !results.empty())
-      html +=
-          "<h2>Results</h2>\n" + results + std::string(results.find(" ± ") != std::string::npos ? what_errors_are : "");
+      html += "<h2>Results</h2>\n" + results + note_on_errors(results);
     if (const auto trust = cards(trust_facts(run, diameters[0])); !trust.empty())
       html += "<h2>Reliability</h2>\n" + trust;
     return html + details(run) + "</header>\n";
@@ -197,7 +198,8 @@ std::string head_of(const std::vector<RunResults>& runs, const std::vector<doubl
     std::ranges::move(cost_facts(runs[i]), std::back_inserter(facts.back()));
     std::ranges::move(trust_facts(runs[i], diameters[i]), std::back_inserter(facts.back()));
   }
-  html += facts_table(runs, facts);
+  const std::string table = facts_table(runs, facts);
+  html += table + note_on_errors(table);
   for (const RunResults& run : runs) {
     html += message_of(run);
     html += "<details><summary>" + escaped(run.name) + "</summary><p class=\"provenance\">" + escaped(provenance(run)) +

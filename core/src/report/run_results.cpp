@@ -61,6 +61,21 @@ const Description& RunResults::at(const std::string& pointer) const {
   return json.contains(place) ? json.at(place) : nothing;
 }
 
+NamedChannel RunResults::find(const std::string& curve) const {
+  const auto slash = curve.find('/');
+  if (slash == std::string::npos) return {};
+  const auto probe = std::ranges::find(probes, curve.substr(0, slash), &ProbeSeries::name);
+  if (probe == probes.end()) return {};
+  return {&*probe, probe->channel(curve.substr(slash + 1))};
+}
+
+NamedChannel RunResults::abscissa_of(const NamedChannel& curve) const {
+  const Description& wanted = at("/description/output/picture/x");
+  if (wanted.is_string())
+    if (const NamedChannel x = find(wanted.get<std::string>()); x.is_scalar()) return x;
+  return {curve.probe, curve.probe->channel("time")};
+}
+
 std::string RunResults::title() const {
   const Description& title = at("/description/title");
   return title.is_string() && !title.get_ref<const std::string&>().empty() ? title.get<std::string>() : name;

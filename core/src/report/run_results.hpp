@@ -27,6 +27,14 @@ struct ProbeSeries {
   const Channel* channel(const std::string& name) const;
 };
 
+/// A channel with its probe; null if there is none.
+struct NamedChannel {
+  const ProbeSeries* probe = nullptr;
+  const ProbeSeries::Channel* channel = nullptr;
+  bool is_scalar() const { return channel && channel->width() == 1; }
+  bool is(const std::string& full) const { return probe->name + '/' + channel->name == full; }
+};
+
 struct RunResults {
   std::filesystem::path folder;
   std::string name;                           ///< of the folder
@@ -38,6 +46,10 @@ struct RunResults {
 
   /// The value at a JSON pointer of run.json; null if there is none.
   const Description& at(const std::string& pointer) const;
+  /// The channel of a curve, "probe/channel".
+  NamedChannel find(const std::string& curve) const;
+  /// The abscissa of a curve: that of the description's picture, or time.
+  NamedChannel abscissa_of(const NamedChannel& curve) const;
   std::string title() const;  ///< of the description, or the folder's name
   /// Whether the description names a curve, "probe/channel", in its picture or in a reference.
   bool asks_for(const std::string& curve) const;

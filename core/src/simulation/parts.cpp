@@ -85,7 +85,7 @@ void Simulation::Parts::set_engine(const std::string& name, std::shared_ptr<Engi
           std::pair(BodyState::energy, "the energy balance")})
       if (needed.has(state) && !kept.has(state))
         throw Error("the engine \"" + name + "\" needs " + what +
-                    ", which are not kept; request this state when the simulation is opened");
+                    ", which this simulation does not keep; request this state when the simulation is opened");
   }
   runner.set_engine(name, std::move(engine));
 }
