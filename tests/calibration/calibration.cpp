@@ -90,29 +90,32 @@ struct World {
   }
 };
 
+// Two standard errors of two independent parameters hold in 0.95² of all worlds. The bounds were set with other worlds.
 TEST(Calibration, FindsKnownParametersOfRandomProblemsInFewTrials) {
-  constexpr std::uint64_t worlds = 20;
-  constexpr double scatter = 0.12, tolerance = 0.03, start = 0.1;
-  std::size_t trials_used = 0;
-  int within = 0, met = 0;
-  for (std::uint64_t seed = 1; seed <= worlds; ++seed) {
-    const World world(seed);
-    const auto values = world({world.known[0], world.known[1]});
-    const auto calibration = described({{"a", parameter(0, 1, start)}, {"b", parameter(0, 1, start)}},
-                                       {{"one", {.value = values[0], .tolerance = tolerance}},
-                                        {"three", {.value = values[1], .tolerance = tolerance}},
-                                        {"two", {.value = values[2], .tolerance = tolerance}}});
-    Trials trials = trials_of(calibration, stand_in(world, {scatter, scatter, scatter}, 4, seed));
-    const auto outcome = calibrate(trials, calibration.optimizer);
-    trials_used += trials.all().size();
-    met += is_met(trials, outcome) ? 1 : 0;
-    const Eigen::ArrayXd off = (trials.all()[outcome.optimum].place - world.known).cwiseAbs(),
-                         error = outcome.uncertainty.standard_error;
-    within += (off <= 2 * error && error < 0.3).all() ? 1 : 0;
+  constexpr std::uint64_t worlds = 300;
+  constexpr double tolerance = 0.03, start = 0.1;
+  for (const double scatter : {0.05, 0.12, 0.15}) {
+    std::size_t trials_used = 0;
+    int within = 0, met = 0;
+    for (std::uint64_t seed = 1; seed <= worlds; ++seed) {
+      const World world(seed);
+      const auto values = world({world.known[0], world.known[1]});
+      const auto calibration = described({{"a", parameter(0, 1, start)}, {"b", parameter(0, 1, start)}},
+                                         {{"one", {.value = values[0], .tolerance = tolerance}},
+                                          {"three", {.value = values[1], .tolerance = tolerance}},
+                                          {"two", {.value = values[2], .tolerance = tolerance}}});
+      Trials trials = trials_of(calibration, stand_in(world, {scatter, scatter, scatter}, 4, seed));
+      const auto outcome = calibrate(trials, calibration.optimizer);
+      trials_used += trials.all().size();
+      met += is_met(trials, outcome) ? 1 : 0;
+      const Eigen::ArrayXd off = (trials.all()[outcome.optimum].place - world.known).cwiseAbs(),
+                           error = outcome.uncertainty.standard_error;
+      within += (off <= 2 * error && error < 0.3).all() ? 1 : 0;
+    }
+    EXPECT_LE(trials_used, 17 * worlds) << scatter;
+    EXPECT_GE(within, 0.9 * worlds) << "two standard errors, scatter " << scatter;
+    EXPECT_GE(met, 0.95 * worlds) << scatter;
   }
-  EXPECT_LE(trials_used, 380u);
-  EXPECT_GE(within, 18) << "two standard errors";
-  EXPECT_GE(met, 18);
 }
 
 TEST(Calibration, IsExactWithoutScatter) {
@@ -202,10 +205,12 @@ TEST(Calibration, ReportsAParameterWithoutEffect) {
   EXPECT_FALSE(std::isfinite(outcome.uncertainty.standard_error[1]));
 }
 
-// The slope of a parameter without effect is scatter: it must not spoil the error of the others.
+// The slope of a parameter without effect is scatter: it must not spoil the error of the others. By chance it exceeds
+// twice its standard error in a twentieth of all cases.
 TEST(Calibration, LeavesAParameterWithoutEffectOutOfTheErrorsOfOthers) {
-  int known = 0;
-  for (std::uint64_t world = 1; world <= 20; ++world) {
+  constexpr int worlds = 200;
+  int known = 0, taken_for_an_effect = 0;
+  for (std::uint64_t world = 1; world <= worlds; ++world) {
     const auto calibration =
         described({{"friction", parameter(5, 40, 27)}, {"idle", parameter(0, 1, 0.2)}, {"other", parameter(0, 1, 0.5)}},
                   {{"peak", {.value = 700, .tolerance = 10}}});
@@ -214,10 +219,16 @@ TEST(Calibration, LeavesAParameterWithoutEffectOutOfTheErrorsOfOthers) {
         stand_in([](const std::vector<double>& v) { return std::vector<double>{400 + 15 * v[0]}; }, {30}, 4, world));
     const auto outcome = calibrate(trials, calibration.optimizer);
     const Uncertainty& found = outcome.uncertainty;
-    if (!std::isfinite(found.standard_error[0]) || std::isfinite(found.standard_error[1]) ||
-        std::isfinite(found.standard_error[2]))
-      continue;
+    EXPECT_FALSE(std::isfinite(found.standard_error[1])) << world;
+    EXPECT_FALSE(std::isfinite(found.standard_error[2])) << world;
+    EXPECT_THAT(calibration_page(calibration, trials, outcome), Not(AnyOf(HasSubstr("nan"), HasSubstr("inf"))))
+        << world;
+    if (!std::isfinite(found.standard_error[0])) continue;
     ++known;
+    if (std::isfinite(found.covariance(1, 1)) || std::isfinite(found.covariance(2, 2))) {
+      ++taken_for_an_effect;
+      continue;
+    }
     EXPECT_EQ(found.covariance(0, 1), 0) << world;
     EXPECT_EQ(found.correlation(0, 1), 0) << world;
     EXPECT_EQ(found.correlation(2, 2), 1) << world;
@@ -225,10 +236,9 @@ TEST(Calibration, LeavesAParameterWithoutEffectOutOfTheErrorsOfOthers) {
                 AllOf(HasSubstr("The targets do not determine idle: "),
                       HasSubstr("The targets do not determine other: "), Not(HasSubstr("friction"))))
         << world;
-    EXPECT_THAT(calibration_page(calibration, trials, outcome), Not(AnyOf(HasSubstr("nan"), HasSubstr("inf"))))
-        << world;
   }
-  EXPECT_GE(known, 16) << "of 20: scatter looks like an effect now and then";
+  EXPECT_GE(known, 0.9 * worlds);
+  EXPECT_LE(taken_for_an_effect, 2 * 0.05 * worlds);
 }
 
 TEST(Calibration, HasNoErrorsIfNoParameterHasAnEffect) {

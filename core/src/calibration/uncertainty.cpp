@@ -16,6 +16,8 @@ namespace {
 constexpr double near = 0.3;
 /// Distance of added trials from the centre: far enough for an effect beyond scatter.
 constexpr double design_step = 0.2;
+/// Distance of trials added where scatter hides an effect.
+constexpr double far_step = 0.9 * near;
 /// A singular value counts if it exceeds that of scatter so many times.
 constexpr double significance = 2;
 /// A slope is known by itself unless those of other parameters, with which the trials change this one, raise its
@@ -64,10 +66,11 @@ double misfit_by_scatter(const Trials& trials) {
 }
 
 /// A place at a distance from the centre that no trial has; nothing if all such places are taken.
-std::optional<Eigen::VectorXd> new_place(const Trials& trials, std::size_t centre, const Eigen::VectorXd& along) {
+std::optional<Eigen::VectorXd> new_place(const Trials& trials, std::size_t centre, const Eigen::VectorXd& along,
+                                         double size) {
   const Eigen::VectorXd& from = trials.all()[centre].place;
   std::optional<Eigen::VectorXd> farthest;
-  for (const double step : {design_step, -design_step, 0.5 * design_step, -0.5 * design_step}) {
+  for (const double step : {size, -size, 0.5 * size, -0.5 * size}) {
     const Eigen::VectorXd place = (from + step * along).cwiseMax(0).cwiseMin(1);
     const bool taken = std::ranges::any_of(trials.all(), [&](const Trial& trial) {
       return (trial.place - place).lpNorm<Eigen::Infinity>() < 0.1 * design_step;
@@ -77,15 +80,21 @@ std::optional<Eigen::VectorXd> new_place(const Trials& trials, std::size_t centr
   return farthest;
 }
 
-/// The place next to be tried so that the neighbours show the effect of every parameter; nothing if they do.
+/// The place next to be tried so that the neighbours show the effect of every parameter; nothing if they do. Trials
+/// farther away show what scatter hides.
 std::optional<Eigen::VectorXd> design_place(const Trials& trials, std::size_t centre) {
   const auto near_ones = neighbours(trials, centre);
   const Eigen::Index count = trials.all()[centre].place.size();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(spread(near_ones), Eigen::ComputeFullV);
   const auto size = [&](Eigen::Index k) { return k < svd.singularValues().size() ? svd.singularValues()[k] : 0.0; };
-  if (size(count - 1) >= design_step && static_cast<Eigen::Index>(near_ones.size()) >= count + 2) return std::nullopt;
-  for (Eigen::Index k = count - 1; k >= 0; --k)
-    if (const auto place = new_place(trials, centre, svd.matrixV().col(k))) return place;
+  if (size(count - 1) < design_step || static_cast<Eigen::Index>(near_ones.size()) < count + 2) {
+    for (Eigen::Index k = count - 1; k >= 0; --k)
+      if (const auto place = new_place(trials, centre, svd.matrixV().col(k), design_step)) return place;
+    return std::nullopt;
+  }
+  for (const Direction& one : uncertainty_at(trials, centre).directions)
+    if (!one.resolved)
+      if (const auto place = new_place(trials, centre, one.along, far_step)) return place;
   return std::nullopt;
 }
 
