@@ -272,6 +272,7 @@ ExitStatus study_command(const Options& options) {
       enlarge(estimated, live, scene, *registry, options.threads());
     };
   const auto runs = missing_runs(place, options, *registry, all, measure);
+  if (!runs.empty()) warn_of_idle_settings(place, *registry);
   if (options.has("dry-run")) {
     for (const StudyRun& run : runs) std::cout << run.name << '\n';
     std::cout << runs.size() << " of " << all << " runs are missing in " << out.string() << '\n';

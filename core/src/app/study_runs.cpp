@@ -16,6 +16,7 @@
 #include <set>
 #include <utility>
 
+#include "app/idle_settings.hpp"
 #include "app/metric_checks.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
@@ -158,6 +159,27 @@ std::vector<StudyRun> missing_runs(const StudyPlace& place, const Options& optio
   line.end();
   all = line.count();
   return runs;
+}
+
+void warn_of_idle_settings(const StudyPlace& place, const Registry& registry) {
+  const StudyDescription& study = place.study;
+  std::map<std::string, std::string> pointers;  // by where the study names them
+  for (const auto& [name, setting] : study.settings)
+    for (std::size_t i = 0; i < setting.pointers.size(); ++i)
+      pointers[fmt::format("/settings/{}/pointers/{}", pointer_token(name), i)] = setting.pointers[i];
+  for (const auto& [pointer, value] : study.set.items()) pointers["/set/" + pointer_token(pointer)] = pointer;
+  std::map<std::string, std::string> reasons;
+  for (const Variant& variant : variants(study)) {
+    const auto idle = idle_settings({study.scene, sets_of(study, variant, study.seeds.values.front()), registry});
+    std::erase_if(pointers, [&](const auto& one) {
+      const auto why = why_idle(idle, one.second);
+      if (why) reasons[one.first] = *why;
+      return !why;
+    });
+    if (pointers.empty()) return;
+  }
+  const Document written = Document::load(place.file);
+  for (const auto& [where, pointer] : pointers) warn_of_idle(written, where, reasons.at(where));
 }
 
 std::map<std::filesystem::path, std::string> unusable_runs(const StudyPlace& place, const Options& options,

@@ -36,6 +36,9 @@ std::vector<StudyRun> missing_runs(const StudyPlace& place, const Options& optio
                                    std::size_t& all,
                                    const std::function<void(const LiveScene&, const Scene&)>& each_variant = {});
 
+/// Warns of values that the study sets, and that have no effect in any of its variants.
+void warn_of_idle_settings(const StudyPlace& place, const Registry& registry);
+
 /// Existing runs that are of another description, or have lost their series: by folder, why.
 std::map<std::filesystem::path, std::string> unusable_runs(const StudyPlace& place, const Options& options,
                                                            const Registry& registry);

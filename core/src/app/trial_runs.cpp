@@ -5,22 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <iostream>
 #include <string>
 #include <utility>
 
+#include "app/idle_settings.hpp"
 #include "app/metric_checks.hpp"
-#include "app/run_setup.hpp"
 #include "app/runs_folder.hpp"
 #include "calibration/observations.hpp"
 #include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
-#include "kernel/kernel.hpp"
-#include "lint/without_effect.hpp"
 #include "output/plugins_used.hpp"
 #include "simulation/live_scene.hpp"
-#include "simulation/prepared_sample.hpp"
 #include "study/batch.hpp"
 #include "study/study_result.hpp"
 
@@ -129,16 +125,10 @@ CheckedTrials TrialRuns::check() const {
 std::map<std::string, std::string> TrialRuns::ignored(const std::vector<double>& values) const try {
   const CalibrationDescription& calibration = place_.calibration;
   const SceneSource source{calibration.base, sets(values, 1), registry_};
-  const Scene own = scene(values);
-  const LiveScene live(own);
-  const Components& components = live.components();
-  const Kernel kernel(*own.description, components, prepare(live, registry_, run_state(*own.description, components)),
-                      1);
-  const auto idle = without_effect(own, components, kernel, source);
+  const auto idle = idle_settings(source);
   std::map<std::string, std::string> all;
   const auto add = [&](const std::string& pointer, const std::string& at) {
-    for (const UnusedSetting& one : idle)
-      if ((pointer + '/').starts_with(one.pointer + '/')) all[at] = fmt::format("{}: {}", one.pointer, one.why);
+    if (const auto why = why_idle(idle, pointer)) all[at] = *why;
   };
   const auto run_with = [&](const std::string& pointer, const Description& value) {
     Description seen = resolved(*source.with({pointer + '=' + value.dump()}).description);
@@ -155,12 +145,8 @@ std::map<std::string, std::string> TrialRuns::ignored(const std::vector<double>&
     }
   for (const auto& [pointer, value] : calibration.set.items()) add(pointer, "/set/" + pointer_token(pointer));
   return all;
-} catch (const PlacedError&) {
-  return {};  // the scene cannot begin with these values, of which a trial says more
-} catch (const NumericsError&) {
-  return {};
 } catch (const DescriptionError&) {
-  return {};
+  return {};  // of which a trial says more
 }
 
 void TrialRuns::refuse_ignored(const std::vector<double>& first) const {
@@ -171,11 +157,7 @@ void TrialRuns::refuse_ignored(const std::vector<double>& first) const {
     // A parameter may have no effect while another one is 0.
     for (const auto& [at, why] : ignored(middle)) {
       if (!once.contains(at)) continue;
-      const bool is_set = at.starts_with("/set/");
-      Problem problem = place_.written.problem(at, why);
-      if (is_set)
-        std::cerr << fmt::format("grit: warning: {}:{}: {}: without effect: {}", problem.file, problem.line, at, why)
-                  << std::endl;
+      if (at.starts_with("/set/")) warn_of_idle(place_.written, at, why);
       else problems.push_back(place_.written.problem(at, why + "; allowed is a value that changes the run"));
     }
   if (!problems.empty()) throw DescriptionError(std::move(problems));
