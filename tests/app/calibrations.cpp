@@ -13,6 +13,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -85,16 +86,18 @@ TEST_F(Calibrations, FindAParameterAndWriteADescriptionWithIt) {
   const auto first = grit({"calibrate", "damping.json", "--jobs", "2"});
   ASSERT_EQ(first.status, 0) << first.err;
   EXPECT_THAT(first.err, HasSubstr("damping of a fall: at most 25 trials of 2 runs, results in results/damping"));
-  EXPECT_THAT(first.out,
-              AllOf(HasSubstr("  damping: 0."), HasSubstr("All targets are met within tolerance and scatter."),
-                    HasSubstr("fitted description: results/damping/fitted.json"),
-                    HasSubstr("page: results/damping/calibration.html")));
+  EXPECT_THAT(first.out, AllOf(HasSubstr("  damping: 0."),
+                               ContainsRegex("energy: [0-9.]+ ± [0-9.e-]+ µJ, target 0.5011 ± 0.01 µJ, misfit"),
+                               HasSubstr("All targets are met within tolerance and scatter."),
+                               HasSubstr("fitted description: results/damping/fitted.json"),
+                               HasSubstr("page: results/damping/calibration.html")));
   const json optimum = result().at("optimum");
   const double found = optimum.at("parameters").at("damping").at("value"),
                error = optimum.at("parameters").at("damping").at("standard_error");
   EXPECT_NEAR(found, 0.5, 3 * error);
   EXPECT_LT(error, 0.1);
-  EXPECT_THAT(text_of(folder / "results/damping/calibration.html"), HasSubstr("damping of a fall"));
+  EXPECT_THAT(text_of(folder / "results/damping/calibration.html"),
+              AllOf(HasSubstr("damping of a fall"), HasSubstr("<th>energy [µJ]</th>"), Not(HasSubstr("Correlation"))));
 
   // The fitted description is ready to run.
   const json fitted = json::parse(text_of(folder / "results/damping/fitted.json"));

@@ -123,19 +123,42 @@ TEST(Descriptions, NamesThatAreMeantAreSuggested) {
                 "you mean \"packing/void_ratio\"? Allowed is one of packing/time, "));
 }
 
-TEST(Descriptions, AStudyIsDistinguishedFromADescription) {
+TEST(Descriptions, FilesOfAnotherKindAreToldFromWhatACommandTakes) {
   const OwnFolder folder;
+  folder.write("two.json", two_grains);
   folder.write("study.json", R"({
   "scene": "two.json",
   "settings": {"density": {"pointers": ["/materials/sand/density"], "values": [1000, 2000], "usual": "1000"}}
 }
 )");
+  folder.write("fit.json", R"({
+  "title": "fit",
+  "base": "two.json",
+  "parameters": {"density": {"pointers": ["/materials/sand/density"], "range": [1000, 2000]}},
+  "targets": {"energy": {"type": "last", "of": "packing/kinetic_energy", "value": 1, "tolerance": 0.1}}
+}
+)");
+  const auto refused = [&](const char* command, const char* file, const std::string& why) {
+    const auto outcome = grit_in(folder.path(), {command, file});
+    EXPECT_EQ(outcome.status, 2) << command;
+    EXPECT_THAT(outcome.err, HasSubstr(why + "\ngrit: 1 problem")) << command;
+  };
+  const std::string study = "study.json:2: /scene: found a study; allowed is ",
+                    use_study = ". 'grit study study.json' runs a study; with --dry-run it lists the runs",
+                    fit = "fit.json:3: /base: found a calibration; allowed is ",
+                    use_fit =
+                        ". 'grit calibrate fit.json' runs a calibration; with --dry-run it prints the number of runs",
+                    a_study = "a study, which names a description in \"scene\" and varies it",
+                    a_calibration = "a calibration, which names a description in \"base\" and the parameters to find";
   for (const char* command : {"run", "check", "expand"}) {
-    const auto outcome = grit_in(folder.path(), {command, "study.json"});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("study.json:2: /scene: found a study; allowed is a description. "
-                                       "'grit study study.json' runs a study; with --dry-run it lists the runs\n"));
+    refused(command, "study.json", study + "a description" + use_study);
+    refused(command, "fit.json", fit + "a description" + use_fit);
   }
+  refused("study", "fit.json", fit + a_study + use_fit);
+  refused("calibrate", "study.json", study + a_calibration + use_study);
+  const std::string description = "/contacts: found a description of a simulation; allowed is ";
+  refused("study", "two.json", description + a_study + ". 'grit run two.json' runs this one");
+  refused("calibrate", "two.json", description + a_calibration + ". 'grit run two.json' runs this one");
 }
 
 TEST(Descriptions, OneProblemIsOneLineAndTheCount) {

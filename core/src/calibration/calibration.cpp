@@ -9,6 +9,7 @@
 
 #include "format/duration.hpp"
 #include "format/number.hpp"
+#include "format/symbols.hpp"
 #include "grit/error.hpp"
 #include "input/document.hpp"
 
@@ -51,11 +52,13 @@ std::string of_direction(const Direction& direction, const std::vector<std::stri
   std::vector<std::string> parts;
   for (std::size_t k = 0; k < names.size(); ++k)
     if (std::abs(direction.along[static_cast<Eigen::Index>(k)]) > notable) parts.push_back(names[k]);
-  const std::string why = direction.resolved
-                              ? fmt::format("is known to {:.0f} % of the ranges only", 100 * direction.standard_error)
-                          : samples == 1 ? "changes the targets by no more than the trials differ from a smooth surface"
-                                         : "changes the targets by no more than scatter does";
-  if (parts.size() == 1) return fmt::format("The targets do not determine {}: to change it {}.", parts.front(), why);
+  const std::string why =
+      direction.resolved ? fmt::format("has a standard error of {:.0f} % of the ranges", 100 * direction.standard_error)
+      : samples == 1     ? "changes the targets by no more than the trials differ from a smooth surface"
+                         : "changes the targets by no more than scatter does";
+  if (parts.size() == 1)
+    return fmt::format("The targets do not determine {}: {} {}.", parts.front(),
+                       direction.resolved ? "it" : "changing it", why);
   return fmt::format("The targets cannot tell {} apart: {} together {}.", fmt::join(parts, " and "),
                      way_text(direction, names), why);
 }
@@ -156,11 +159,11 @@ std::vector<std::string> parameter_texts(const CalibrationDescription& calibrati
   std::size_t k = 0;
   for (const auto& [name, parameter] : calibration.parameters) {
     const double error = outcome.uncertainty.standard_error[static_cast<Eigen::Index>(k)];
-    texts.push_back(name + ": " +
-                    with_unit(std::isfinite(error) ? fmt::format("{:.4g} ± {:.2g}", best.values[k],
+    const std::string value = std::isfinite(error) ? fmt::format("{:.4g} ± {:.2g}", best.values[k],
                                                                  parameter.error_of_value(best.values[k], error))
-                                                   : fmt::format("{:.4g}, not determined,", best.values[k]),
-                              parameter.unit()));
+                                                   : fmt::format("{:.4g}", best.values[k]);
+    texts.push_back(name + ": " + with_unit(value, parameter.unit()) +
+                    (std::isfinite(error) ? "" : ", not determined"));
     ++k;
   }
   return texts;
@@ -176,14 +179,19 @@ std::vector<std::string> target_texts(const CalibrationDescription& calibration,
     const auto observation = std::ranges::find(trials.observations(), index, &Observation::target);
     const auto i = static_cast<Eigen::Index>(observation - trials.observations().begin());
     const std::string misfit = fmt::format("misfit {:.2g}", misfits[static_cast<Eigen::Index>(index++)]);
+    const ReadableUnit shown = readable(*observation);
+    const std::string unit = after_number(shown.unit);
     if (target.metric.is_curve()) {
-      texts.push_back(fmt::format("{}: target curve ± {:.3g}, {}", name, observation->tolerance, misfit));
+      texts.push_back(
+          fmt::format("{}: target curve ± {:.3g}{}, {}", name, shown.factor * observation->tolerance, unit, misfit));
       continue;
     }
-    const std::string scatter =
-        best.samples.size() == 1 ? "" : fmt::format(" ± {:.2g}", std::sqrt(trials.variance_of_mean()[i]));
-    texts.push_back(fmt::format("{}: {:.4g}{}, target {:.4g} ± {:.3g}, {}", name, best.mean[i], scatter,
-                                observation->value, observation->tolerance, misfit));
+    const std::string scatter = best.samples.size() == 1
+                                    ? ""
+                                    : fmt::format(" ± {:.2g}", shown.factor * std::sqrt(trials.variance_of_mean()[i]));
+    texts.push_back(fmt::format("{}: {:.4g}{}{}, target {:.4g} ± {:.3g}{}, {}", name, shown.factor * best.mean[i],
+                                scatter, unit, shown.factor * observation->value, shown.factor * observation->tolerance,
+                                unit, misfit));
   }
   return texts;
 }
@@ -230,7 +238,8 @@ Description to_json(const CalibrationDescription& calibration, const Description
                             {"at", std::isnan(one.at) ? Description() : Description(one.at)},
                             {"value", one.value},
                             {"tolerance", one.tolerance},
-                            {"weight", one.weight}});
+                            {"weight", one.weight},
+                            {"unit", one.unit}});
   for (const Trial& trial : trials.all()) all.push_back(to_json(trials, trial));
   return {{"calibration", written},
           {"parameters", calibration.names()},

@@ -14,7 +14,7 @@
 namespace grit {
 namespace {
 
-constexpr double frame_left = 84, frame_right = 690, frame_top = 34, frame_bottom = 342;
+constexpr double frame_left = 84, frame_right = 690, frame_top = 34;
 /// Deviations beyond this are drawn at the edge.
 constexpr double most_deviation = 10;
 
@@ -107,6 +107,8 @@ std::string target_chart(const Trials& trials, std::size_t optimum, std::size_t 
                          const MetricDescription& metric) {
   const auto mine = std::ranges::equal_range(trials.observations(), target, {}, &Observation::target);
   const Trial& best = trials.all()[optimum];
+  const ReadableUnit shown =
+      readable(std::ranges::max(mine, {}, [](const Observation& one) { return std::abs(one.value); }));
   const auto first = std::ranges::find_if(trials.all(), [](const Trial& trial) { return !trial.failed(); });
   double low = std::numeric_limits<double>::infinity(), high = -low;
   const auto include = [&](double value) { low = std::min(low, value), high = std::max(high, value); };
@@ -117,15 +119,15 @@ std::string target_chart(const Trials& trials, std::size_t optimum, std::size_t 
     ++row;
   }
   Plot plot(name, axis_ticks(mine.front().at, mine.back().at, AxisEnds::kept),
-            axis_ticks(low, high, AxisEnds::whole_steps));
-  plot.draw_axes(metric.against.empty() ? "abscissa" : metric.against, name, false);
+            axis_ticks(shown.factor * low, shown.factor * high, AxisEnds::whole_steps));
+  plot.draw_axes(metric.against.empty() ? "abscissa" : metric.against, axis_title(name, shown.unit), false);
+  const auto at = [&](const Observation& one, double value) { return plot.at(one.at, shown.factor * value); };
   std::vector<Point> target_points, above, below, found, began;
   row -= static_cast<std::ptrdiff_t>(mine.size());
   for (const Observation& one : mine) {
-    target_points.push_back(plot.at(one.at, one.value));
-    above.push_back(plot.at(one.at, one.value + one.tolerance));
-    below.push_back(plot.at(one.at, one.value - one.tolerance));
-    found.push_back(plot.at(one.at, best.mean[row])), began.push_back(plot.at(one.at, first->mean[row]));
+    target_points.push_back(at(one, one.value));
+    above.push_back(at(one, one.value + one.tolerance)), below.push_back(at(one, one.value - one.tolerance));
+    found.push_back(at(one, best.mean[row])), began.push_back(at(one, first->mean[row]));
     ++row;
   }
   plot.svg.polyline(above, "class=\"wish\""), plot.svg.polyline(below, "class=\"wish\"");

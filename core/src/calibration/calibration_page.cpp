@@ -39,8 +39,16 @@ std::string trials_table(const CalibrationDescription& calibration, const Trials
   std::string html = "<div class=\"wide\"><table><thead><tr><th>#</th><th class=\"name\">purpose</th>";
   for (const auto& [name, parameter] : calibration.parameters)
     html += "<th>" + escaped(name + (parameter.unit().empty() ? "" : " [" + parameter.unit() + ']')) + "</th>";
-  for (const auto& [name, target] : calibration.targets)
-    html += "<th>" + escaped(name) + (target.metric.is_curve() ? "<br><small>misfit</small>" : "") + "</th>";
+  std::vector<ReadableUnit> shown;  // by target
+  for (const Observation& one : trials.observations())
+    if (one.target == shown.size()) shown.push_back(readable(one));
+  std::size_t column = 0;
+  for (const auto& [name, target] : calibration.targets) {
+    const std::string& unit = shown[column++].unit;
+    html += "<th>" +
+            (target.metric.is_curve() ? escaped(name) + "<br><small>misfit</small>" : escaped(axis_title(name, unit))) +
+            "</th>";
+  }
   html += "<th>misfit</th><th>core-seconds</th></tr></thead><tbody>\n";
   for (std::size_t i = 0; i < trials.all().size(); ++i) {
     const Trial& trial = trials.all()[i];
@@ -55,7 +63,7 @@ std::string trials_table(const CalibrationDescription& calibration, const Trials
       for (std::size_t k = 0, row = 0; k < trials.targets(); ++k) {
         const bool is_curve = !std::isnan(trials.observations()[row].at);
         html += fmt::format("<td>{:.4g}</td>", is_curve ? misfits[static_cast<Eigen::Index>(k)]
-                                                        : trial.mean[static_cast<Eigen::Index>(row)]);
+                                                        : shown[k].factor * trial.mean[static_cast<Eigen::Index>(row)]);
         while (row < trials.observations().size() && trials.observations()[row].target == k) ++row;
       }
       html += fmt::format("<td>{:.3g}</td>", misfits.sum());
@@ -102,8 +110,9 @@ std::string calibration_page(const CalibrationDescription& calibration, const Tr
   html += "<div>" + misfit_chart(trials, outcome.optimum) +
           "<p><small>Blue: the search. Orange: around the optimum, for the uncertainty. ×: failed.</small></p></div>\n"
           "</div>\n";
-  html += "<h2>Correlation of the parameters' errors</h2>\n" +
-          correlation_table(calibration.names(), outcome.uncertainty.correlation);
+  if (calibration.parameters.size() > 1)
+    html += "<h2>Correlation of the parameters' errors</h2>\n" +
+            correlation_table(calibration.names(), outcome.uncertainty.correlation);
   html += "<h2>Trials</h2>\n" + trials_table(calibration, trials, outcome.optimum);
   return html + std::string(page_end);
 }

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "input/file_kind.hpp"
 #include "input/reader.hpp"
 #include "study/number_with_unit.hpp"
 
@@ -189,7 +190,9 @@ CalibrationDescription load_calibration(const std::filesystem::path& path) {
   CalibrationDescription calibration;
   Parameters parameters;
   calibration.declare(parameters);
-  read(Document::load(path), parameters);
+  const Document document = Document::load(path);
+  refuse_other_kinds(document, path, FileKind::calibration);
+  read(document, parameters);
   return calibration;
 }
 

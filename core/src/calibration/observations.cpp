@@ -54,7 +54,8 @@ bool can_compare(double magnitude, double tolerance, const char* key, const Repo
 }
 
 /// Appends those of a target whose curve has been read.
-void add_curve(std::size_t index, const ReferencePoints& points, double tolerance, std::vector<Observation>& all) {
+void add_curve(std::size_t index, const ReferencePoints& points, double tolerance, const std::string& unit,
+               std::vector<Observation>& all) {
   const Metric curve{points.x, points.y, "", ""};
   const double from = points.x.front(), to = points.x.back();
   for (std::size_t i = 0; i < target_points; ++i) {
@@ -64,7 +65,8 @@ void add_curve(std::size_t index, const ReferencePoints& points, double toleranc
                    .at = x,
                    .value = at(curve, x),
                    .tolerance = tolerance,
-                   .weight = 1.0 / static_cast<double>(target_points)});
+                   .weight = 1.0 / static_cast<double>(target_points),
+                   .unit = unit});
   }
 }
 
@@ -87,14 +89,14 @@ std::vector<Observation> observations_of(const CalibrationDescription& calibrati
         const ReferencePoints points = read_reference(*target.metric.curve);
         const double largest = std::abs(*std::ranges::max_element(points.y, {}, [](double y) { return std::abs(y); }));
         if (tolerance && can_compare(largest, *tolerance, "curve/file", report))
-          add_curve(index, points, *tolerance, all);
+          add_curve(index, points, *tolerance, unit, all);
       } catch (const FileError& error) {
         problems.push_back(
             written.problem(pointer + "curve/file", missing_file_text(error, target.metric.curve->file)));
       }
     else if (const auto value = number_of(target.value, unit, "value", report);
              value && tolerance && can_compare(std::abs(*value), *tolerance, "value", report))
-      all.push_back({.target = index, .value = *value, .tolerance = *tolerance});
+      all.push_back({.target = index, .value = *value, .tolerance = *tolerance, .unit = unit});
     ++index;
   }
   if (!problems.empty()) throw DescriptionError(std::move(problems));

@@ -27,6 +27,10 @@ const char* word_of(TrialPurpose purpose) {
   return "";
 }
 
+ReadableUnit readable(const Observation& observation) {
+  return readable(observation.unit, std::max(std::abs(observation.value), observation.tolerance));
+}
+
 std::string Trial::failure() const {
   for (const TrialSample& sample : samples)
     if (sample.found.empty()) return fmt::format("seed {:.0f}: {}", sample.seed, sample.failure);

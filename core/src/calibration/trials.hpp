@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "calibration/description.hpp"
+#include "format/symbols.hpp"
 
 namespace grit {
 
@@ -19,8 +20,12 @@ struct Observation {
   std::size_t target = 0;                                ///< index in the order of names
   double at = std::numeric_limits<double>::quiet_NaN();  ///< abscissa of the point of a curve
   double value = 0, tolerance = 1;
-  double weight = 1;  ///< those of the points of a curve add up to 1: it counts as one target
+  double weight = 1;      ///< those of the points of a curve add up to 1: it counts as one target
+  std::string unit = "";  ///< of value and tolerance; empty if it is not known
 };
+
+/// A unit in which the numbers of an observation are read easily.
+ReadableUnit readable(const Observation& observation);
 
 /// One run of a trial.
 struct TrialSample {

@@ -176,7 +176,11 @@ LocalModel local_model(const Trials& trials, std::size_t centre) {
   if (static_cast<Eigen::Index>(near_ones.size()) < terms_of(linear.jacobian.cols(), true) + spare_trials)
     return linear;
   LocalModel quadratic = fitted_model(trials, centre, near_ones, true);
-  return quadratic.slope_covariance.trace() <= most_loss * linear.slope_covariance.trace() ? quadratic : linear;
+  const Eigen::VectorXd weights = root_weights(trials).cwiseAbs2();
+  const auto slope_scatter = [&](const LocalModel& model) {
+    return weights.dot(model.noise) * model.slope_covariance.trace();
+  };
+  return slope_scatter(quadratic) <= most_loss * slope_scatter(linear) ? quadratic : linear;
 }
 
 Uncertainty uncertainty_at(const Trials& trials, std::size_t centre) {
@@ -243,13 +247,17 @@ std::size_t explore_optimum(Trials& trials, double resolution, std::size_t most)
     }
     if (settled || trials.all().size() >= last) return centre;
     const Eigen::VectorXd expected = expected_optimum(trials, centre, uncertainty_at(trials, centre));
-    if ((expected - trials.all()[centre].place).lpNorm<Eigen::Infinity>() < resolution) return centre;
-    const Trial& check = trials.all()[trials.at(expected, TrialPurpose::check)];
+    // Targets with narrow tolerances may be met closer by than the resolution of the search.
+    const bool fits = trials.fits(trials.all()[centre]);
+    if (fits && (expected - trials.all()[centre].place).lpNorm<Eigen::Infinity>() < resolution) return centre;
+    const std::size_t index = trials.at(expected, TrialPurpose::check);
+    if (index == centre) return centre;
+    const Trial& check = trials.all()[index];
     const double gain = trials.misfit(trials.all()[centre]) - trials.misfit(check),
                  by_scatter = misfit_by_scatter(trials);
-    if (gain < -by_scatter || (trials.fits(trials.all()[centre]) && !trials.fits(check))) return centre;
+    if (gain < -by_scatter || (fits && !trials.fits(check))) return centre;
     settled = gain < by_scatter;
-    centre = static_cast<std::size_t>(&check - trials.all().data());
+    centre = index;
   }
 }
 

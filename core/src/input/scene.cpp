@@ -9,6 +9,7 @@
 
 #include "format/names.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
+#include "input/file_kind.hpp"
 #include "input/reader.hpp"
 #include "plugins/component.hpp"
 #include "plugins/parameter_values.hpp"
@@ -316,11 +317,7 @@ std::string scenario_type(const Document& document) {
 Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets,
                        const Registry& registry, const std::string& sets_by) {
   Document document = Document::load(path);
-  if (document.json().contains("scene") &&
-      (document.json().contains("settings") || document.json().contains("metrics")))
-    throw DescriptionError(
-        {document.problem("/scene", "found a study; allowed is a description. 'grit study " + path.string() +
-                                        "' runs a study; with --dry-run it lists the runs")});
+  refuse_other_kinds(document, path, FileKind::description);
   return expanded_document(std::move(document), sets, registry, sets_by);
 }
 

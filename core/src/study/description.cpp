@@ -7,6 +7,7 @@
 
 #include "format/number.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
+#include "input/file_kind.hpp"
 #include "input/reader.hpp"
 
 namespace grit {
@@ -207,13 +208,7 @@ StudyDescription load_study(const std::filesystem::path& path) {
   Parameters parameters;
   study.declare(parameters);
   const Document document = Document::load(path);
-  for (const char* key : {"scenario", "contacts", "bodies", "stages"})
-    if (document.json().contains(key) && !document.json().contains("scene"))
-      throw DescriptionError(
-          {document.problem('/' + std::string(key),
-                            "found a description of a simulation; allowed is a study, which names a description "
-                            "in \"scene\" and varies it. 'grit run " +
-                                path.string() + "' runs this one")});
+  refuse_other_kinds(document, path, FileKind::study);
   read(document, parameters);
   return study;
 }
