@@ -1,6 +1,8 @@
 // Directions in which a wall may move.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -19,9 +21,10 @@ inline bool turns(const MotionDescription& motion) {
          (motion.oscillation && !motion.oscillation->angle.isZero(0.0));
 }
 
-/// Whether a wall's reference point may move in the positive and negative direction of an axis.
+/// Whether a wall's reference point may move in the positive and negative direction of an axis, and how fast.
 struct Ways {
   bool along = false, against = false;
+  double speed = 0;  ///< at most [m/s]; infinite if only the run knows
   bool none() const { return !along && !against; }
 };
 
@@ -33,7 +36,8 @@ inline Ways ways(const std::map<std::string, WallDescription>& walls, const std:
   const bool swings = motion.oscillation && motion.oscillation->amplitude[axis - 'x'] != 0;
   const bool both = swings || (motion.servo && has(motion.servo->axis)) || (motion.free && has(motion.free->axes));
   const double velocity = motion.velocity[axis - 'x'];
-  return {both || velocity > 0, both || velocity < 0};
+  return {both || velocity > 0, both || velocity < 0,
+          both || turns(motion) ? std::numeric_limits<double>::infinity() : std::abs(velocity)};
 }
 
 }  // namespace grit

@@ -2,12 +2,17 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <cmath>
 #include <variant>
 
 #include "description/wall_ways.hpp"
 
 namespace grit {
 namespace {
+
+/// Of products of values in a description.
+constexpr double rounding = 1e-9;
 
 using Complaints = std::vector<Complaint>;
 using Parts = std::vector<Condition>;
@@ -53,9 +58,16 @@ struct Judge {
     Ways way;
     for (const auto& walls : states.walls) {
       const Ways then = ways(walls, c.wall, c.axis.front());
-      way = {way.along || then.along, way.against || then.against};
+      way = {way.along || then.along, way.against || then.against, std::max(way.speed, then.speed)};
     }
-    if (c.value > 0 ? way.along : way.against) return "";
+    if (c.value > 0 ? way.along : way.against) {
+      const double limit = states.stage.limit;
+      if (std::abs(c.value) <= way.speed * limit * (1 + rounding)) return "";
+      return fmt::format(
+          "found a displacement of {:g} m, but wall \"{}\" moves {:g} m at most, at {:g} m/s until the limit "
+          "of the stage, {:g} s; allowed is a limit of {:.4g} s or more",
+          c.value, c.wall, way.speed * limit, way.speed, limit, std::abs(c.value) / way.speed);
+    }
     return "found a condition on the displacement of wall \"" + c.wall + "\" along " + c.axis +
            ", but its reference point " + (way.none() ? "does not move along it" : "moves in the opposite direction") +
            " in this stage; allowed is a displacement in the direction of the motion in /walls/" + c.wall +
