@@ -74,12 +74,34 @@ TEST_F(Studies, AreRunEvaluatedAndNotRunAgain) {
   EXPECT_EQ(second.status, 0);
   EXPECT_THAT(second.err, HasSubstr("0 of 8 runs to do"));
   EXPECT_EQ(second.out, first.out);
-  // What is missing, and what another description made, is run again.
+  // What is missing is run again; what another description made, if that is wanted.
   folder.write("results/study/runs/usual/seed-1/run.json", R"({"status": "done"})");
   folder.write("study.json", std::string(study).replace(std::string(study).find("0.1,"), 4, "0.2,"));
   EXPECT_THAT(
       grit({"study", "study.json", "--dry-run"}).out,
       AllOf(HasSubstr("usual, seed 1\n"), HasSubstr("safety=0.2, seed 2\n"), HasSubstr("3 of 8 runs are missing")));
+}
+
+TEST_F(Studies, ReplaceRunsOfAnotherDescriptionIfThatIsWanted) {
+  ASSERT_EQ(grit({"study", "study.json"}).status, 0);
+  const auto page = text_of(folder / "results/study/study.html");
+  const std::string run = "results/study/runs/finest/seed-2/run.json";
+  const auto kept = text_of(folder / run);
+  auto scene = json::parse(text_of(folder / "two.json"));
+  scene["materials"]["sand"]["density"] = 1000;
+  folder.write("two.json", scene.dump());
+  const std::string why =
+      "results/study: holds 8 runs of another description, another grit or another build of a plugin, the first in "
+      "results/study/runs/usual/seed-1; give --overwrite to replace them, or choose another folder with --out\n";
+  const auto refused = grit({"study", "study.json"});
+  EXPECT_EQ(refused.status, 5);
+  EXPECT_THAT(refused.err, HasSubstr(why));
+  EXPECT_EQ(text_of(folder / "results/study/study.html"), page);
+  EXPECT_EQ(text_of(folder / run), kept);
+  EXPECT_THAT(grit({"study", "study.json", "--dry-run"}).out,
+              HasSubstr("8 of them replace runs of another description, and need --overwrite\n"));
+  EXPECT_EQ(grit({"study", "study.json", "--overwrite"}).status, 0);
+  EXPECT_EQ(json::parse(text_of(folder / run))["description"]["materials"]["sand"]["density"], 1000);
 }
 
 TEST_F(Studies, ReportFailedVariants) {

@@ -153,13 +153,16 @@ TEST_F(Submissions, DoOneRunAndDoItOnce) {
   const auto again = study({"--only", "runs/safety=0.8/seed-1"});
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_THAT(again.out, HasSubstr("runs/safety=0.8/seed-1: already complete"));
-  // Of another description it is replaced.
+  // Of another description it is replaced if that is wanted.
   folder.write("two.json", [&] {
     auto scene = json::parse(text_of(folder / "two.json"));
     scene["title"] = "other";
     return scene.dump();
   }());
-  EXPECT_THAT(study({"--only", "runs/safety=0.8/seed-1"}).out, HasSubstr("results: "));
+  const auto other = study({"--only", "runs/safety=0.8/seed-1"});
+  EXPECT_EQ(other.status, 5);
+  EXPECT_THAT(other.err, HasSubstr("holds 1 run of another description"));
+  EXPECT_THAT(study({"--only", "runs/safety=0.8/seed-1", "--overwrite"}).out, HasSubstr("results: "));
   EXPECT_FALSE(std::filesystem::exists(folder / "results/sweep/study.json")) << "nothing is evaluated";
 }
 

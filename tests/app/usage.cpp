@@ -53,6 +53,24 @@ TEST(Usage, EveryCommandHasHelp) {
   }
 }
 
+TEST(Usage, ResultsHaveTheNameOfTheFile) {
+  const OwnFolder folder;
+  for (const char* name : {"..json", "...json"}) {
+    folder.write(name, two_grains);
+    for (const char* command : {"run", "study", "calibrate"}) {
+      const auto outcome = grit_in(folder.path(), {command, name});
+      EXPECT_NE(outcome.status, 0);
+      EXPECT_FALSE(std::filesystem::exists(folder / "results")) << command << ' ' << name;
+      EXPECT_FALSE(std::filesystem::exists(folder / "run.json")) << command << ' ' << name;
+    }
+    const auto run = grit_in(folder.path(), {"run", name});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_THAT(run.err,
+                HasSubstr(std::string(name) + ": gives results no name; rename the file, or give a folder with --out"));
+    EXPECT_EQ(grit_in(folder.path(), {"run", name, "--out", "named", "--overwrite", "-q"}).status, 0);
+  }
+}
+
 TEST(Usage, IsInUtf8) {
   const OwnFolder folder;
   for (const char* word : {"/title=\xff", "/title=\xc3", "/title=\xed\xa0\x80", "/title=\xc0\xaf"}) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <string>
 #include <vector>
@@ -26,6 +27,19 @@ TEST(AtomicFile, LeavesNothingBesideItWhereItCannotBeReplaced) {
     EXPECT_THROW(write(taken, "text"), FileError);
     EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("run.json"));
   }
+}
+
+TEST(AtomicFile, DoesNotReplaceAPipe) {
+  const OwnFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  try {
+    write_atomically(folder / "pipe", "text");
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_THAT(error.what(), testing::EndsWith("pipe: is a device, a pipe or a socket; give the name of a file"));
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+  EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("pipe"));
 }
 
 }  // namespace

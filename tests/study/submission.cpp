@@ -35,7 +35,8 @@ TEST(RunCommand, IsThatOfOneRun) {
   EXPECT_TRUE(is_of_study(run_words(with, "box.json", "out", {}, false)));
   EXPECT_TRUE(is_of_study(run_words({"/bin/grit"}, "box.json", "out", {"/seed=1"}, true)));
   EXPECT_FALSE(is_of_study({"/bin/grit", "run", "box.json", "--out", "out", "--overwrite", "--threads", "2"}));
-  EXPECT_THAT(task_words(with, "study.json", "out"),
+  EXPECT_THAT(task_words(with, "study.json", "out", true), testing::Contains("--overwrite"));
+  EXPECT_THAT(task_words(with, "study.json", "out", false),
               ElementsAre("/bin/grit", "study", "study.json", "--out", "out", "--threads", "2", "--plugin-path",
                           "/plug ins", "--only"));
 }

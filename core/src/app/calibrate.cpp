@@ -139,7 +139,7 @@ CalibrationPlace place_of(const std::filesystem::path& file, const Options& opti
   CalibrationPlace place;
   place.calibration = load_calibration(file);
   place.written = Document::load(file);
-  place.out = options.has("out") ? std::filesystem::path(options.get<std::string>("out")) : "results" / file.stem();
+  place.out = options.has("out") ? std::filesystem::path(options.get<std::string>("out")) : default_results(file);
   return place;
 }
 

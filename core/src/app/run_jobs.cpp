@@ -32,8 +32,12 @@ RunJob job_of(const std::string& word, const Options& options) {
     return job;
   }
   job.file = word;
-  job.folder = options.has("out") ? options.get<std::string>("out") : std::string("results");
-  if (!options.has("out") || options.words().size() > 1) job.folder /= std::filesystem::path(word).stem();
+  if (!options.has("out")) {
+    job.folder = default_results(word);
+  } else {
+    job.folder = options.get<std::string>("out");
+    if (options.words().size() > 1) job.folder /= default_results(word).filename();
+  }
   return job;
 }
 

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <set>
 
+#include "app/command.hpp"
+#include "format/number.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/text_file.hpp"
 #include "output/checkpoint.hpp"
@@ -74,22 +76,36 @@ bool has_series(const std::filesystem::path& folder) {
   }
 }
 
+std::filesystem::path default_results(const std::filesystem::path& file) {
+  const auto name = file.stem();
+  if (name == "." || name == ".." || name.empty())
+    throw UsageError(file.string() + ": gives results no name; rename the file, or give a folder with --out");
+  return "results" / name;
+}
+
 Progressed progressed(const std::filesystem::path& folder, const Description& description,
                       const std::vector<PluginUsed>& plugins) {
   const auto run = read_run_json(folder);
-  if (!run) return Progressed::nothing;
+  if (!run || !run->contains("description")) return Progressed::nothing;
   const auto says = [&](const char* pointer) { return run->value(Description::json_pointer(pointer), Description()); };
   Description used = Description::array();
   for (const PluginUsed& one : plugins) used.push_back(plugin_facts(one));
   if (says("/description") != description || says("/grit/revision") != build_facts().revision ||
       !says("/plugins").is_array() || builds(says("/plugins")) != builds(used))
-    return Progressed::nothing;
+    return Progressed::other;
   if (says("/status") == "failed") return Progressed::ended;
   if (says("/status") == "done") return has_series(folder) ? Progressed::ended : Progressed::lost;
   // The run.json of a killed run still has the status "running".
   const bool stopped = says("/status") == "interrupted" || says("/status") == "running";
   return stopped && can_resume(folder, {.description = description, .plugins = plugins}) ? Progressed::begun
                                                                                          : Progressed::nothing;
+}
+
+void refuse_other_runs(const std::filesystem::path& out, std::size_t count, const std::filesystem::path& folder) {
+  throw FileError(
+      fmt::format("{}: holds {} of another description, another grit or another build of a plugin, the first "
+                  "in {}; give --overwrite to replace them, or choose another folder with --out",
+                  out.string(), counted(count, "run", "runs"), folder.string()));
 }
 
 std::string lost_series(const std::filesystem::path& folder) {

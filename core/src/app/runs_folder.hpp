@@ -12,9 +12,13 @@
 
 namespace grit {
 
+/// results/NAME of a file NAME.json. Throws UsageError if no folder has this name.
+std::filesystem::path default_results(const std::filesystem::path& file);
+
 /// The state of a run on disk.
 enum class Progressed {
-  nothing,  ///< no run, or one of another description, another grit or another build of a plugin
+  nothing,  ///< no run, or one that began and cannot be resumed
+  other,    ///< a run of another description, another grit or another build of a plugin
   begun,    ///< interrupted or killed; can be resumed
   lost,     ///< done, but its series is missing or unreadable
   ended,    ///< done or failed numerically
@@ -23,6 +27,11 @@ enum class Progressed {
 /// The state of the run of this description with these plugins in a folder.
 Progressed progressed(const std::filesystem::path& folder, const Description& description,
                       const std::vector<PluginUsed>& plugins);
+
+/// Throws FileError: the first of so many runs of another description is in `folder`, and runs in `out` would replace
+/// them.
+[[noreturn]] void refuse_other_runs(const std::filesystem::path& out, std::size_t count,
+                                    const std::filesystem::path& folder);
 
 /// Whether the series of a run can be read.
 bool has_series(const std::filesystem::path& folder);

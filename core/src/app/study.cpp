@@ -241,6 +241,7 @@ void study_options(Options& options) {
       "jobs", po::value<std::string>()->default_value(std::to_string(cores), "all cores")->value_name("N"),
       "concurrent runs")("threads", po::value<std::string>()->default_value("1")->value_name("N"), "threads per run")(
       "dry-run", "list the missing runs and exit")(
+      "overwrite", "replace runs of another description, another grit or another build of a plugin")(
       "collect", "evaluate existing runs of any revision of grit, also while others go on; start no runs")(
       "quiet,q", "print results only, no progress");
   add_submit_options(options);
@@ -258,7 +259,7 @@ ExitStatus study_command(const Options& options) {
   const auto registry = options.registry();
   const StudyPlace place{
       load_study(file), file,
-      options.has("out") ? std::filesystem::path(options.get<std::string>("out")) : "results" / file.stem()};
+      options.has("out") ? std::filesystem::path(options.get<std::string>("out")) : default_results(file)};
   const std::filesystem::path& out = place.out;
   if (options.has("only")) return do_only(place, options.get<std::string>("only"), options, *registry);
   if (options.has("collect")) return collect(place, options, *registry);
@@ -276,6 +277,8 @@ ExitStatus study_command(const Options& options) {
   if (options.has("dry-run")) {
     for (const StudyRun& run : runs) std::cout << run.name << '\n';
     std::cout << runs.size() << " of " << all << " runs are missing in " << out.string() << '\n';
+    if (const auto others = std::ranges::count_if(runs, &StudyRun::replaces); others > 0)
+      std::cout << others << " of them replace runs of another description, and need --overwrite\n";
     if (how.empty() || runs.empty()) return ExitStatus::done;
   }
   if (!lock) {
@@ -283,6 +286,9 @@ ExitStatus study_command(const Options& options) {
     lock_folder(out, "grit study", lock);
   }
   refuse_foreign_files_of_study(out, runs);
+  if (!options.has("overwrite"))
+    if (const auto first = std::ranges::find_if(runs, &StudyRun::replaces); first != runs.end())
+      refuse_other_runs(out, static_cast<std::size_t>(std::ranges::count_if(runs, &StudyRun::replaces)), first->folder);
   if (!options.has("dry-run")) {
     if (!runs.empty()) refuse_queued_job(out);
     if (!options.has("quiet"))
@@ -300,7 +306,9 @@ ExitStatus study_command(const Options& options) {
     std::cerr << "interrupted; run the same command again to continue" << std::endl;
     return ExitStatus::interrupted;
   }
-  return is_evaluated(evaluate(place, {})) ? ExitStatus::done : ExitStatus::numerics;
+  // The scene may have been edited meanwhile.
+  return is_evaluated(evaluate(place, unusable_runs(place, options, *registry))) ? ExitStatus::done
+                                                                                 : ExitStatus::numerics;
 }
 
 }  // namespace grit

@@ -152,9 +152,9 @@ std::vector<StudyRun> missing_runs(const StudyPlace& place, const Options& optio
     if (each_variant && std::exchange(measured, variant.name) != variant.name)
       of_variant(place.file, variant,
                  [&] { at_its_place(one.scene.document, [&] { each_variant(*live, one.scene); }); });
-    runs.push_back(
-        {fmt::format("{}, seed {:.0f}", variant.name, seed), within, folder,
-         run_words(program, study.scene, folder, sets_of(study, variant, seed), so_far == Progressed::begun)});
+    runs.push_back({fmt::format("{}, seed {:.0f}", variant.name, seed), within, folder,
+                    run_words(program, study.scene, folder, sets_of(study, variant, seed), so_far == Progressed::begun),
+                    so_far == Progressed::other});
   });
   line.end();
   all = line.count();
@@ -228,6 +228,7 @@ ExitStatus do_only(const StudyPlace& place, const std::string& within, const Opt
     return done ? ExitStatus::done : ExitStatus::numerics;
   }
   refuse_foreign_run(folder);
+  if (so_far == Progressed::other && !options.has("overwrite")) refuse_other_runs(place.out, 1, folder);
   const auto words = run_words(run_program(options), place.study.scene, folder, sets_of(place.study, variant, seed),
                                so_far == Progressed::begun);
   std::vector<char*> arguments;

@@ -28,6 +28,7 @@ struct StudyRun {
   std::filesystem::path within;    ///< its folder, relative to that of the study
   std::filesystem::path folder;    ///< the same below StudyPlace::out
   std::vector<std::string> words;  ///< the command line of `grit run`
+  bool replaces = false;           ///< another run in its folder
 };
 
 /// The missing runs; `all` counts all runs. Metrics and channels are checked. Calls `each_variant` with the scene of

@@ -64,7 +64,7 @@ Submission submission_of(const StudyPlace& place, const std::vector<StudyRun>& r
   Submission of{.name = place.file.stem().string(),
                 .directory = fs::current_path(),
                 .folder = cluster_folder(place.out),
-                .command = task_words(run_program(options), place.file, place.out),
+                .command = task_words(run_program(options), place.file, place.out, options.has("overwrite")),
                 .runs = {},
                 .threads = options.threads()};
   for (const StudyRun& run : runs) of.runs.push_back(run.within.string());

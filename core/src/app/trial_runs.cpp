@@ -179,6 +179,7 @@ std::vector<TrialSample> TrialRuns::operator()(std::size_t number, const std::ve
       const Progressed so_far = progressed(run, description, plugins_used(*one.description, registry_));
       if (so_far == Progressed::ended) continue;
       refuse_foreign_run(run);
+      if (so_far == Progressed::other) refuse_other_runs(place_.out, 1, run);
       jobs.push_back({run_words(program_, place_.calibration.base, run, sets(values, static_cast<double>(seed)),
                                 so_far == Progressed::begun),
                       log_in(run)});

@@ -29,10 +29,17 @@ std::filesystem::path temporary_path(const std::filesystem::path& path) {
 void publish(const std::filesystem::path& path) {
   const auto temporary = temporary_path(path);
   std::error_code error, ignored;
-  std::filesystem::rename(temporary, path, error);
-  if (!error) return;
+  const auto found = std::filesystem::symlink_status(path, ignored).type();
+  const bool is_special = found == std::filesystem::file_type::character ||
+                          found == std::filesystem::file_type::block || found == std::filesystem::file_type::fifo ||
+                          found == std::filesystem::file_type::socket;
+  if (!is_special) {
+    std::filesystem::rename(temporary, path, error);
+    if (!error) return;
+  }
   std::filesystem::remove(temporary, ignored);
-  throw FileError(path.string() + ": cannot replace the file: " + error.message());
+  throw FileError(path.string() + (is_special ? ": is a device, a pipe or a socket; give the name of a file"
+                                              : ": cannot replace the file: " + error.message()));
 }
 
 void publish_new(const std::filesystem::path& path) {

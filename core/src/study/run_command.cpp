@@ -27,8 +27,9 @@ bool is_of_study(const std::vector<std::string>& words) {
 }
 
 std::vector<std::string> task_words(const RunProgram& with, const std::filesystem::path& study,
-                                    const std::filesystem::path& out) {
+                                    const std::filesystem::path& out, bool overwrite) {
   std::vector<std::string> words{with.program.string(), "study", study.string(), "--out", out.string()};
+  if (overwrite) words.push_back("--overwrite");
   add_common(words, with);
   words.push_back("--only");
   return words;

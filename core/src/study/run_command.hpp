@@ -23,8 +23,9 @@ std::vector<std::string> run_words(const RunProgram& with, const std::string& sc
 bool is_of_study(const std::vector<std::string>& words);
 
 /// `grit study --only`, to which the name of a run is added. It looks at what the folder of the run holds when it is
-/// started, and so may be started again at any time: by a scheduler, or by hand.
+/// started, and so may be started again at any time: by a scheduler, or by hand. `overwrite`: it replaces a run of
+/// another description.
 std::vector<std::string> task_words(const RunProgram& with, const std::filesystem::path& study,
-                                    const std::filesystem::path& out);
+                                    const std::filesystem::path& out, bool overwrite);
 
 }  // namespace grit
