@@ -129,6 +129,29 @@ TEST_F(Calibrations, FindAParameterAndWriteADescriptionWithIt) {
   EXPECT_EQ(result().at("trials")[0].at("values"), json({0.4}));
 }
 
+TEST_F(Calibrations, KeepFilesOfTheUser) {
+  const std::string trials = "results/damping/trials/";
+  folder.write(trials + "0001/seed-1/log.txt", "mine");
+  const auto refused = grit({"calibrate", "damping.json", "--overwrite"});
+  EXPECT_EQ(refused.status, 5);
+  EXPECT_THAT(refused.err,
+              HasSubstr(trials + "0001/seed-1/log.txt: no study or calibration wrote this file, which would "
+                                 "be replaced"));
+  std::filesystem::remove(folder / (trials + "0001/seed-1/log.txt"));
+  const std::vector<std::string> own{"notes.txt", "lab/measured.csv", "0099/seed-1/data.csv", "0001/note.txt",
+                                     "0001/seed-1/note.txt"};
+  for (const auto& file : own) folder.write(trials + file, "mine");
+  for (int times = 0; times < 2; ++times) ASSERT_EQ(grit({"calibrate", "damping.json", "--overwrite"}).status, 0);
+  for (const auto& file : own) EXPECT_EQ(text_of(folder / (trials + file)), "mine") << file;
+  // Runs of trials that there are no more are removed.
+  calibration["optimizer"]["trials"] = 1;
+  write();
+  ASSERT_EQ(grit({"calibrate", "damping.json", "--overwrite"}).status, 0);
+  const std::size_t last = result().at("trials").size();
+  EXPECT_LT(last, 9u);
+  EXPECT_FALSE(std::filesystem::exists(folder / (trials + "000" + std::to_string(last + 1))));
+}
+
 TEST_F(Calibrations, AreInterruptedAndContinued) {
   auto scene = json::parse(fall);
   scene["stages"][0]["until"]["value"] = "100 s", scene["stages"][0]["limit"] = "200 s";

@@ -152,8 +152,7 @@ void calibrate_options(Options& options) {
       "jobs", po::value<std::string>()->value_name("N"), "concurrent runs; default: runs_at_once of the file")(
       "threads", po::value<std::string>()->default_value("1")->value_name("N"), "threads per run")(
       "dry-run", "print the number of runs and their time, and exit")(
-      "overwrite", "remove the trials of another calibration in the folder")("quiet,q",
-                                                                             "print results only, no progress");
+      "overwrite", "remove the runs of trials in the folder")("quiet,q", "print results only, no progress");
 }
 
 ExitStatus calibrate_command(const Options& options) {
@@ -184,7 +183,7 @@ ExitStatus calibrate_command(const Options& options) {
   std::optional<FolderLock> lock;
   lock_folder(place.out, "grit calibrate", lock);
   refuse_foreign_files_of_calibration(place, options.has("overwrite"));
-  if (options.has("overwrite")) std::filesystem::remove_all(place.out / "trials");
+  if (options.has("overwrite")) remove_trials(place.out);
   if (!quiet)
     std::cerr << (calibration.title.empty() ? file.string() : calibration.title) << ": at most "
               << most_trials(calibration) << " trials of "

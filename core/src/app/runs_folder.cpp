@@ -22,6 +22,15 @@
 namespace grit {
 namespace {
 
+/// Of a run that did not begin there is only the log, with its messages.
+bool is_only_log(const std::filesystem::path& log) {
+  std::error_code none;
+  const std::filesystem::directory_iterator entries(log.parent_path(), none);
+  const std::string text = text_of(log);
+  return std::filesystem::is_regular_file(log, none) && std::distance(begin(entries), end(entries)) == 1 &&
+         (text.empty() || text.find("grit: ") != text.npos);
+}
+
 /// Identifies plugins by kind, name and checksum, whatever their paths.
 std::set<std::string> builds(const Description& plugins) {
   std::set<std::string> all;
@@ -139,7 +148,11 @@ void refuse_foreign_run(const std::filesystem::path& folder) {
   for (const auto& at : {folder.parent_path(), folder})
     if (std::filesystem::is_symlink(at, none))
       refuse(at, ": no study or calibration made this symbolic link: it leads to results");
-  if (!holds_a_run(folder)) return;
+  if (!holds_a_run(folder)) {
+    if (const auto log = folder / "log.txt"; std::filesystem::exists(log, none) && !is_only_log(log))
+      refuse(log, ": no study or calibration wrote this file");
+    return;
+  }
   const auto run = read_run_json(folder);
   const auto commands = run ? run->value("commands", Description()) : Description();
   const bool is_own = commands.is_array()

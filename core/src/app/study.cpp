@@ -67,14 +67,6 @@ bool is_own_table(const std::filesystem::path& path) {
   return head.starts_with("variant,") && head.find(",metric,") != std::string::npos;
 }
 
-/// Of a run that did not begin there is only the log, with its messages.
-bool is_own_log(const std::filesystem::path& log) {
-  if (holds_a_run(log.parent_path())) return true;
-  const std::filesystem::directory_iterator entries(log.parent_path());
-  const std::string text = text_of(log);
-  return std::distance(begin(entries), end(entries)) == 1 && (text.empty() || text.find("grit: ") != text.npos);
-}
-
 std::filesystem::path log_of(const StudyRun& run) { return run.folder / "log.txt"; }
 
 /// Throws FileError if the study would replace a file that no study wrote.
@@ -89,7 +81,7 @@ void refuse_foreign_files_of_study(const std::filesystem::path& out, const std::
   check(out / "study.json", is_study_json);
   check(out / "study.csv", is_own_table);
   refuse_foreign_page(out / "study.html");
-  for (const StudyRun& run : runs) refuse_foreign_run(run.folder), check(log_of(run), is_own_log);
+  for (const StudyRun& run : runs) refuse_foreign_run(run.folder);
 }
 
 /// Throws FileError, also if the first finished run lacks a channel of a metric.

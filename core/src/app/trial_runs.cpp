@@ -15,6 +15,7 @@
 #include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
+#include "output/own_files.hpp"
 #include "output/plugins_used.hpp"
 #include "simulation/live_scene.hpp"
 #include "study/batch.hpp"
@@ -38,6 +39,22 @@ std::filesystem::path folder_of(const std::filesystem::path& trial, double seed)
 }
 
 std::filesystem::path log_in(const std::filesystem::path& run) { return run / "log.txt"; }
+
+/// Folders in which runs of trials are, by their names.
+std::vector<std::filesystem::path> runs_of_trials(const std::filesystem::path& out) {
+  std::vector<std::filesystem::path> all;
+  const auto named = [](const std::filesystem::path& path, const std::string& beginning) {
+    const std::string name = path.filename().string();
+    return std::filesystem::is_directory(path) && name.starts_with(beginning) && name != beginning &&
+           name.find_first_not_of("0123456789", beginning.size()) == name.npos;
+  };
+  if (!std::filesystem::is_directory(out / "trials")) return all;
+  for (const auto& trial : std::filesystem::directory_iterator(out / "trials"))
+    if (named(trial.path(), ""))
+      for (const auto& run : std::filesystem::directory_iterator(trial.path()))
+        if (named(run.path(), "seed-")) all.push_back(run.path());
+  return all;
+}
 
 /// Whether one of two values is part of the other.
 bool overlap(const std::string& one, const std::string& other) {
@@ -231,10 +248,18 @@ std::vector<TrialSample> TrialRuns::results(const std::filesystem::path& folder)
 }
 
 void refuse_foreign_trials(const std::filesystem::path& out) {
-  if (!std::filesystem::is_directory(out / "trials")) return;
-  for (const auto& trial : std::filesystem::directory_iterator(out / "trials"))
-    if (trial.is_directory())
-      for (const auto& run : std::filesystem::directory_iterator(trial.path())) refuse_foreign_run(run.path());
+  for (const auto& run : runs_of_trials(out)) refuse_foreign_run(run);
+}
+
+void remove_trials(const std::filesystem::path& out) {
+  for (const auto& run : runs_of_trials(out)) {
+    if (!holds_a_run(run)) continue;
+    refuse_foreign_files(run);
+    std::error_code none;
+    std::filesystem::remove(log_in(run), none);
+    remove_run(run);
+    std::filesystem::remove(run.parent_path(), none);  // if it is empty
+  }
 }
 
 }  // namespace grit

@@ -68,4 +68,7 @@ class TrialRuns {
 /// Throws FileError if the folders of trials hold runs that grit did not begin.
 void refuse_foreign_trials(const std::filesystem::path& out);
 
+/// Removes the runs of trials; all other files stay. Throws FileError.
+void remove_trials(const std::filesystem::path& out);
+
 }  // namespace grit

@@ -230,6 +230,15 @@ void remove_results(const fs::path& folder) {
   }
 }
 
+void remove_run(const fs::path& folder) {
+  remove_results(folder);
+  for (const auto& path : {folder / "run.json", folder / "description.json", folder / "frames", folder}) {
+    std::error_code error;
+    if (fs::remove(path, error); error && error != std::errc::directory_not_empty)
+      throw FileError(path.string() + ": cannot remove it: " + error.message());
+  }
+}
+
 void refuse_foreign_page(const fs::path& path) {
   if (is_there(path) && !is_own_page(path))
     throw FileError(path.string() +

@@ -30,6 +30,10 @@ std::set<std::filesystem::path> paths_in(const Description& description);
 /// called after refuse_foreign_files(). Throws FileError.
 void remove_results(const std::filesystem::path& folder);
 
+/// Removes a run with all that it wrote, and its folder if nothing else is in it. To be called after
+/// refuse_foreign_files(). Throws FileError.
+void remove_run(const std::filesystem::path& folder);
+
 /// Whether an entry of frames/ is a file of a run, by its name and how it begins.
 bool is_own_frame(const std::filesystem::path& path);
 
