@@ -70,6 +70,11 @@ TEST(ReferenceCurves, NeedTwoPointsWithRisingAbscissa) {
   EXPECT_EQ(error_of({falls, "x", "y"}), falls + ": fewer than two points with rising x");
   const auto noisy = folder.write("noisy.csv", "x,y\n0,1\n2,3\n1,2\nnan,7\n3,4\n").string();
   EXPECT_THAT(read_reference({noisy, "x", "y"}).x, ElementsAre(0, 2, 3));
+  const auto mistyped = folder.write("mistyped.csv", "x,y\n0,1\n1,2\n30,3\n3,4\n4,5\n").string();
+  EXPECT_EQ(error_of({mistyped, "x", "y"}),
+            mistyped +
+                ": 2 of 5 points are not above all before in x, the first in row 4; sort the rows, or give one "
+                "branch of a loop");
 }
 
 }  // namespace

@@ -223,6 +223,22 @@ TEST_F(Resume, StartsFromTheBeginningWithoutACheckpoint) {
   EXPECT_EQ(run_json("new").at("resumed"), 0);
 }
 
+TEST_F(Resume, KeepsACompleteRunWhoseRunJsonIsLost) {
+  ASSERT_EQ(grit(run("done", {"--set", "/stages/0/until/value=10", "--set", "/stages/1/until/value=10"})).status, 0);
+  const std::string whole = text_of(folder / "done/run.json"), final_state = text_of(folder / "done/final.h5");
+  auto other = json::parse(whole);
+  other["status"] = "dune";
+  for (const std::string& damaged : {whole.substr(0, whole.size() / 2), std::string(), other.dump()}) {
+    folder.write("done/run.json", damaged);
+    const auto outcome = grit({"run", "done", "--resume"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("done: holds the final state of a run, but its run.json is missing or damaged"));
+    EXPECT_EQ(text_of(folder / "done/final.h5"), final_state);
+  }
+  folder.write("done/run.json", whole);
+  EXPECT_THAT(grit({"run", "done", "--resume"}).out, HasSubstr("done: already complete"));
+}
+
 TEST_F(Resume, RefusesAnotherRun) {
   interrupt("part");
   const auto before = text_of(folder / "part/run.json");

@@ -94,19 +94,23 @@ class PageServer {
       error_code error;
       const std::size_t length = co_await asio::async_read_until(control_, lines, '\n', into(error));
       if (error) break;
-      const auto begin = asio::buffers_begin(lines.data());
-      progress_.assign(begin, begin + static_cast<std::ptrdiff_t>(length) - 1);
+      progress_.assign(static_cast<const char*>(lines.data().data()), length - 1);
       lines.consume(length);
       news_.cancel();
     }
     ::alarm(shutdown_limit_s);
     progress_.clear(), ended_ = true;
-    if (has_readers()) page_.refresh();
+    if (has_readers()) refresh();
     news_.cancel();
     if (!has_readers()) io_.stop();
     asio::steady_timer timer(io_, last_answer_within);
     co_await timer.async_wait(asio::use_awaitable);
     io_.stop();
+  }
+
+  void refresh() {
+    page_.refresh();
+    refreshed_ = Steady::now();
   }
 
   /// Reads the folder every second, or less often if that takes more than a tenth of a core.
@@ -118,7 +122,7 @@ class PageServer {
       std::erase_if(readers_, [now](const auto& reader) { return now - reader.second > reader_gone_after; });
       std::erase_if(opened_, [now](Steady::time_point then) { return now - then > first_request_within; });
       if (!readers_.empty() && !ended_) {
-        page_.refresh();
+        refresh();
         news_.cancel();
       }
       const std::chrono::duration<double> worked(static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
@@ -182,7 +186,7 @@ class PageServer {
       co_return response;
     }
     if (target == "/") {
-      page_.refresh();
+      if (Steady::now() - refreshed_ > 1s) refresh();  // many requests at once must not delay the end of the run
       if (opened_.size() < max_sessions) opened_.push_back(Steady::now());
       co_return say(http::status::ok, html, page_.html());
     }
@@ -217,9 +221,10 @@ class PageServer {
   tcp::acceptor acceptor_;
   asio::local::stream_protocol::socket control_;
   LivePage& page_;
-  asio::steady_timer news_{io_, Steady::time_point::max()};  ///< cancelled to wake waiting requests
-  std::map<std::string, Steady::time_point> readers_;        ///< open pages and the times of their last requests
-  std::vector<Steady::time_point> opened_;                   ///< send times of pages that have not requested news yet
+  asio::steady_timer news_{io_, Steady::time_point::max()};   ///< cancelled to wake waiting requests
+  std::map<std::string, Steady::time_point> readers_;         ///< open pages and the times of their last requests
+  std::vector<Steady::time_point> opened_;                    ///< send times of pages that have not requested news yet
+  Steady::time_point refreshed_ = Steady::time_point::min();  ///< when the folder was read last
   std::string progress_;
   bool ended_ = false;
   std::size_t sessions_ = 0;

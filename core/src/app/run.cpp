@@ -72,12 +72,18 @@ std::optional<Listener> listener_of(const Options& options) {
   return std::optional<Listener>(std::in_place, port);
 }
 
-/// The checkpoint from which a run continues. Without one the run starts from the beginning, which is reported.
+/// The checkpoint from which a run continues. Without one the run starts from the beginning, which is reported. Throws
+/// Error if it was complete, although its run.json does not say so.
 std::optional<LastCheckpoint> resumed(const std::filesystem::path& folder, const RunFacts& facts) {
   if (auto last = last_checkpoint(folder, facts)) {
     if (!last->note.empty()) std::cerr << "grit: warning: " << last->note << std::endl;
     return last;
   }
+  if (std::filesystem::exists(folder / "final.h5"))
+    throw Error(
+        folder.string() +
+        ": holds the final state of a run, but its run.json is missing or damaged, so that the run would start from "
+        "the beginning; put run.json back, choose another folder (--out DIR) or replace the run (--overwrite)");
   std::cerr << "no checkpoint in " << folder.string() << ": the run starts from the beginning" << std::endl;
   return std::nullopt;
 }

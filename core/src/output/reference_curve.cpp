@@ -1,5 +1,7 @@
 #include "output/reference_curve.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,6 +13,9 @@
 
 namespace grit {
 namespace {
+
+/// Part of the points whose abscissae may fall back.
+constexpr double most_omitted = 0.25;
 
 ReferencePoints thinned(ReferencePoints points) {
   constexpr std::size_t most = 2000;
@@ -29,12 +34,19 @@ ReferencePoints thinned(ReferencePoints points) {
 ReferencePoints read_reference(const ReferenceCurve& curve) {
   const auto columns = read_columns(curve.file, {curve.x, curve.y});
   ReferencePoints points;
+  std::size_t omitted = 0, first = 0;  // which do not rise, such as noise of a transducer; the first one
   for (std::size_t i = 0; i < columns[0].size(); ++i) {
     const double x = columns[0][i], y = columns[1][i];
-    if (std::isfinite(x) && std::isfinite(y) && (points.x.empty() || x > points.x.back()))
-      points.x.push_back(x), points.y.push_back(y);
+    if (!std::isfinite(x) || !std::isfinite(y)) continue;
+    if (points.x.empty() || x > points.x.back()) points.x.push_back(x), points.y.push_back(y);
+    else if (++omitted == 1) first = i + 1;
   }
   if (points.x.size() < 2) throw FileError(curve.file + ": fewer than two points with rising " + curve.x);
+  if (static_cast<double>(omitted) > most_omitted * static_cast<double>(points.x.size() + omitted))
+    throw FileError(
+        fmt::format("{}: {} of {} points are not above all before in {}, the first in row {}; sort the rows, "
+                    "or give one branch of a loop",
+                    curve.file, omitted, points.x.size() + omitted, curve.x, first));
   return points;
 }
 
