@@ -239,6 +239,13 @@ TEST_F(Resume, KeepsACompleteRunWhoseRunJsonIsLost) {
   EXPECT_THAT(grit({"run", "done", "--resume"}).out, HasSubstr("done: already complete"));
 }
 
+TEST_F(Resume, LeavesNoPackingOfAnInterruptionIfTheRunFails) {
+  interrupt("part");
+  ASSERT_TRUE(std::filesystem::exists(folder / "part/packing.txt"));
+  EXPECT_EQ(grit({"run", "part", "--resume", "--set", "/guards/travel=1e-9"}).status, 4);
+  EXPECT_FALSE(std::filesystem::exists(folder / "part/packing.txt"));
+}
+
 TEST_F(Resume, RefusesAnotherRun) {
   interrupt("part");
   const auto before = text_of(folder / "part/run.json");

@@ -264,6 +264,9 @@ void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (summary.status != "failed") {
     for (const char* file : {"packing.txt", "picture.svg"}) expect_no_other(file);
     write_grains(options_.folder / "packing.txt", world, comment_on(world, options_.title));
+  } else if (!has_other("packing.txt")) {  // that of an interruption is not the end's
+    std::error_code ignored;
+    std::filesystem::remove(options_.folder / "packing.txt", ignored);
   }
   if (options_.picture && !kept_.empty() && !has_other("picture.svg")) draw_picture(world, summary);
   for (const char* file : {"packing.txt", "picture.svg"}) note(file);
