@@ -169,6 +169,21 @@ TEST_F(Calibrations, AreInterruptedAndContinued) {
   EXPECT_THAT(text_of(folder / "results/damping/trials/0001/seed-1/run.json"), HasSubstr("interrupted"));
 }
 
+TEST_F(Calibrations, EndIfTheBaseIsEdited) {
+  auto scene = json::parse(fall);
+  scene["stages"][0]["until"]["value"] = "60 ms";
+  folder.write("fall.json", scene.dump());
+  Program running(grit_with({"calibrate", "damping.json", "--jobs", "1"}), folder.path());
+  ASSERT_TRUE(running.wait_for("results in"));
+  while (!std::filesystem::exists(folder / "results/damping/trials/0001/seed-1/run.json")) std::this_thread::yield();
+  scene["bodies"]["grains"]["source"]["count"] = 20;
+  folder.write("fall.json", scene.dump());
+  const auto outcome = running.finish();
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, HasSubstr("fall.json: was edited while the calibration ran"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results/damping/trials/0003"));
+}
+
 TEST_F(Calibrations, LeaveNoRunsWhenKilled) {
   auto scene = json::parse(fall);
   scene["stages"][0]["until"]["value"] = "100 s", scene["stages"][0]["limit"] = "200 s";

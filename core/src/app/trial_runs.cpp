@@ -82,6 +82,7 @@ std::string place_of(const CalibrationDescription& calibration, const std::strin
 TrialRuns::TrialRuns(const CalibrationPlace& place, RunProgram program, std::size_t at_once, const Registry& registry,
                      const std::atomic<bool>& interrupted, std::function<void(std::size_t)> waiting)
     : place_(place),
+      base_(Document::load(place.calibration.base).json()),
       program_(std::move(program)),
       at_once_(at_once),
       registry_(registry),
@@ -187,6 +188,11 @@ std::vector<TrialSample> TrialRuns::operator()(std::size_t number, const std::ve
   const auto failed = [&](const std::string& why) {
     return std::vector<TrialSample>{{.seed = 1, .found = {}, .failure = why, .core_seconds = 0}};
   };
+  if (Document::load(place_.calibration.base).json() != base_)
+    throw FileError(
+        place_.calibration.base +
+        ": was edited while the calibration ran, so that its trials would differ; run the same command again, "
+        "with --overwrite if the change is wanted");
   try {
     for (std::int64_t seed = 1; seed <= place_.calibration.samples.count; ++seed) {
       const auto run = folder_of(folder, static_cast<double>(seed));

@@ -44,7 +44,7 @@ class TrialRuns {
   CheckedTrials check() const;
 
   /// Does the runs of a trial that its folder does not have; see EvaluateTrial. Throws Interrupted, and FileError for a
-  /// run that failed by other means than its numerics.
+  /// run that failed by other means than its numerics, and if the base has been edited.
   std::vector<TrialSample> operator()(std::size_t number, const std::vector<double>& values) const;
 
  private:
@@ -58,6 +58,7 @@ class TrialRuns {
   std::vector<TrialSample> results(const std::filesystem::path& folder) const;
 
   const CalibrationPlace& place_;
+  Description base_;  ///< as it was at first
   RunProgram program_;
   std::size_t at_once_;
   const Registry& registry_;

@@ -317,7 +317,8 @@ class Reader {
   bool has_good_name(const std::string& name, const std::string& at) {
     static const std::regex pattern(name_pattern);
     return (name.size() <= 100 && std::regex_match(name, pattern)) ||
-           complain(at, "found the name " + in_quotes(name) + "; allowed are letters, digits and _ . + -");
+           complain(at, "found the name " + in_quotes(name) +
+                            "; allowed are letters, digits and _ . + -, 100 at most, the first a letter, a digit or _");
   }
 
   // ---- lengths
