@@ -139,6 +139,21 @@ TEST(Facts, ShowAnyStiffnessLevel) {
   EXPECT_EQ(level(1e-305), "none") << "not finite";
 }
 
+// A heap on a wide floor fills little of the box in which stresses are averaged.
+TEST(Facts, ReportNoStressesOfEmptySpace) {
+  const Description json = {{"description", {{"materials", {{"a", {{"contact_modulus", 3e8}}}}}}}};
+  const auto names = [&](double void_ratio) {
+    std::vector<std::string> all;
+    for (const Fact& one : trust_facts(
+             run_with(json, {{"void_ratio", {void_ratio}}, {"mean_stress", {2.0}}, {"inertial_number", {1e-5}}}), 1e-3))
+      all.push_back(one.name);
+    return all;
+  };
+  EXPECT_THAT(names(0.6), testing::IsSupersetOf({"stiffness level", "inertial number"}));
+  EXPECT_THAT(names(900),
+              testing::Not(testing::AnyOf(testing::Contains("stiffness level"), testing::Contains("inertial number"))));
+}
+
 TEST(Facts, ReportHowToAddAnEnergyBalance) {
   const Description json = {{"status", "done"}, {"description", {{"probes", Description::object()}}}};
   const Fact none = fact(trust_facts(run_with(json, {}), 0), "energy closure");

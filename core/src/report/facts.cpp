@@ -10,6 +10,7 @@
 #include "format/duration.hpp"
 #include "format/number.hpp"
 #include "format/symbols.hpp"
+#include "run/recorder.hpp"
 
 namespace grit {
 namespace {
@@ -234,12 +235,14 @@ std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter) {
   }
   if (auto closure = closure_fact(run)) facts.push_back(std::move(*closure));
   const bool flows = has_engine(run, "gravity");
-  if (const auto inertial = largest(run, "inertial_number"); inertial && *inertial > 0)
+  const auto void_ratio = largest(run, "void_ratio");
+  const bool is_specimen = !void_ratio || *void_ratio < most_void_ratio;  // else stresses are those of empty space
+  if (const auto inertial = largest(run, "inertial_number"); inertial && *inertial > 0 && is_specimen)
     facts.push_back({"inertial number", fmt::format("{:.3g}", *inertial),
                      "largest of the last stage; quasi-static below 0.001", *inertial > 1e-3 * 1.005 && !flows});
   const auto modulus = least_modulus(run);
   const auto stress = largest(run, "mean_stress");
-  if (modulus && stress && *stress > 0 && std::isfinite(*modulus / *stress))
+  if (is_specimen && modulus && stress && *stress > 0 && std::isfinite(*modulus / *stress))
     facts.push_back({"stiffness level", three_digits(*modulus / *stress),
                      "contact modulus over the largest mean stress of the last stage", false});
   if (const auto overlap = largest(run, "largest_overlap"); overlap && mean_diameter > 0)

@@ -15,6 +15,10 @@
 
 namespace grit {
 
+/// Around grains that are no specimen, such as a heap on a wide floor, the void ratio is above this. It is not shown
+/// then.
+inline constexpr double most_void_ratio = 10;
+
 /// A probe in the results: a group of series.
 struct ProbeGroup {
   std::string name;  ///< of the probe in the description
@@ -66,8 +70,8 @@ class Recorder {
   virtual ~Recorder() = default;
   /// Once, before the first sample; in a resumed run after serialize() has restored the position.
   virtual void begin(const World& world, std::span<const ProbeGroup> probes) = 0;
-  /// Before the forces of an instant with a frame, or at which a stage may end: throws RefusedRecord if a file is in the
-  /// way of the next frame or of the last results.
+  /// Before the forces of an instant with a frame, or at which a stage may end: throws RefusedRecord if a file is in
+  /// the way of the next frame or of the last results.
   virtual void expect_room() const {}
   /// One sample of the probe with this index in begin()'s list.
   virtual void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) = 0;

@@ -364,7 +364,7 @@ void StageRunner::note_fields(Observer& observer) {
 std::string StageRunner::reached() const {
   std::string text = "unbalanced force " + number(equilibrium(world_).unbalanced_force);
   const double e = interior_void_ratio(world_), overall = void_ratio(world_, world_.specimen());
-  if (std::isfinite(e) && std::isfinite(overall))
+  if (e < most_void_ratio && overall < most_void_ratio)
     text = "void ratio " + number(e) + " (overall " + number(overall) + "), " + text;
   const auto appears_later = [](const auto& group) {
     return !group.second.stage.empty() || std::holds_alternative<StreamSource>(group.second.source.value());
