@@ -59,5 +59,41 @@ class Recording(Mapping):
 
     def to_pandas(self):
         """A pandas DataFrame, with `time` as its index."""
-        import pandas
-        return pandas.DataFrame(dict(self)).set_index("time")
+        return _by_time(self)
+
+
+class Samples(Mapping):
+    """What a probe of the description has sampled so far: channels by name as arrays, one row per sample, with `time` [s] and `step`."""
+
+    def __init__(self, core, name):
+        self.name, self._core = name, core
+        self._units = {channel: unit for channel, unit, _ in core.probes()[name]}
+
+    def __getitem__(self, name):
+        if name not in self._units:
+            raise UnknownName("channel", name, list(self))
+        return self._core.samples(self.name, name)
+
+    def __iter__(self):
+        return iter(self._units)
+
+    def __len__(self):
+        return len(self._units)
+
+    def __repr__(self):
+        return f"<probe {self.name!r}: {len(self['time'])} samples of {', '.join(self)}>"
+
+    def units(self, name):
+        """The unit of a channel."""
+        if name not in self._units:
+            raise UnknownName("channel", name, list(self))
+        return self._units[name]
+
+    def to_pandas(self):
+        """A pandas DataFrame of the channels with one value a sample, with `time` as its index."""
+        return _by_time({name: values for name, values in self.items() if values.ndim == 1})
+
+
+def _by_time(columns):
+    import pandas
+    return pandas.DataFrame(dict(columns)).set_index("time")

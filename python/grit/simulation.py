@@ -10,7 +10,7 @@ from . import arguments, compiled, progress as progress_display
 from .errors import Error, UnknownName
 from .engine import Engine
 from .picture import Picture
-from .recording import Recording
+from .recording import Recording, Samples
 from .world import Bodies, Cell, Clumps, Contacts, Departures, Energies, Walls
 
 _grit = compiled.load()
@@ -172,8 +172,10 @@ class Simulation:
 
     def probe(self, name, *, every_time=None, every_steps=None, units=None):
         """Decorates a function whose result, a dict of numbers, is recorded at an interval: series(name) has the values as arrays.
-        units: {value: unit}. Python is slow: probes of the description are faster and in the results of `grit run`."""
+        units: {value: unit}. Python is slow: probes of the description are faster. Raises Error for the name of one of these."""
         recording = Recording(arguments.text("name", name, "heights"), units, _grit.is_unit)
+        if name in self._core.probes():
+            raise Error(f"the description has a probe {name!r}; choose another name")
         at_interval = self._at_interval("every_time", every_time, "every_steps", every_steps)
 
         def decorate(function):
@@ -219,10 +221,13 @@ class Simulation:
         return self._engines[name].act(self, bodies)
 
     def series(self, name):
-        """What the probe of this name has recorded. Those of the description are in the results of `grit run`."""
-        if name not in self._recordings:
-            raise UnknownName("probe", name, list(self._recordings))
-        return self._recordings[name][0]
+        """What the probe of this name has recorded since the simulation was opened: one that probe() added, or one of the description."""
+        if name in self._recordings:
+            return self._recordings[name][0]
+        described = self._core.probes()
+        if name not in described:
+            raise UnknownName("probe", name, [*self._recordings, *described])
+        return Samples(self._core, name)
 
     # State
 

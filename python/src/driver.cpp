@@ -1,5 +1,6 @@
 #include "driver.hpp"
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 
@@ -71,7 +72,8 @@ class Driver::PythonEngine final : public Engine {
   EngineRates rates_;
 };
 
-Driver::Driver(Simulation simulation) : simulation_(std::move(simulation)) {
+Driver::Driver(Simulation simulation, std::unique_ptr<Samples> samples)
+    : samples_(std::move(samples)), simulation_(std::move(simulation)) {
   simulation_.interrupt_when([this] { return stops(); });
   simulation_.on_progress([this](const Progress& progress) { report(progress); }, progress_every);
 }
@@ -309,6 +311,13 @@ const World& Driver::world_with_forces() {
     has_forces_ = true;
   }
   return simulation_.world();
+}
+
+std::vector<ProbeGroup> Driver::probes() { return simulation().parts().runner.probes(); }
+
+py::array Driver::samples(const std::string& probe, const std::string& channel) {
+  const std::vector<ProbeGroup> all = probes();
+  return samples_->column(*std::ranges::find(all, probe, &ProbeGroup::name), channel);
 }
 
 bool Driver::done() const {

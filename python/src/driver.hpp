@@ -16,6 +16,7 @@
 #include "checkpoints.hpp"
 #include "grit/engine.hpp"
 #include "grit/simulation.hpp"
+#include "samples.hpp"
 
 namespace grit::python {
 
@@ -31,7 +32,8 @@ struct Goal {
 /// cycle of references is hidden from Python's garbage collection.
 class Driver {
  public:
-  explicit Driver(Simulation simulation);
+  /// `samples` is the recorder of the simulation.
+  Driver(Simulation simulation, std::unique_ptr<Samples> samples);
   Driver(const Driver&) = delete;
 
   void own(const py::object& owner) { owner_ = py::weakref(owner); }
@@ -59,6 +61,9 @@ class Driver {
   const World& world() const;
   const World& world_with_forces();
   Arrays& arrays() { return arrays_; }
+  /// The probes of the description, and what they have sampled.
+  std::vector<ProbeGroup> probes();
+  py::array samples(const std::string& probe, const std::string& channel);
   bool done() const;
   /// Whether an error ended it, so that it cannot go on.
   bool failed();
@@ -82,6 +87,7 @@ class Driver {
   void throw_raised();
   void report(const Progress& progress);
 
+  std::unique_ptr<Samples> samples_;  // outlives the simulation
   Simulation simulation_;
   Arrays arrays_{simulation_};
   std::shared_ptr<const Description> facts_;  // of its checkpoints, once they are needed

@@ -4,9 +4,11 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "checkpoints.hpp"
@@ -14,6 +16,7 @@
 #include "errors.hpp"
 #include "grit/error.hpp"
 #include "input/units.hpp"
+#include "output/series.hpp"
 #include "pictures.hpp"
 #include "plugins/build_facts.hpp"
 #include "simulation/parts.hpp"
@@ -31,14 +34,25 @@ StateRequest state_of(const std::vector<std::string>& names) {
   return all;
 }
 
+using ChannelFacts = std::tuple<std::string, std::string, std::string>;  // name, unit, description
+
+std::vector<ChannelFacts> columns_of(const ProbeGroup& probe) {
+  std::vector<ChannelFacts> all{{time_column.name, time_column.unit, time_column.doc},
+                                {step_column.name, step_column.unit, step_column.doc}};
+  for (const Channel& one : probe.channels) all.emplace_back(one.name, one.unit, one.doc);
+  return all;
+}
+
 /// `json`: whether `source` is a description, instead of the path of one. `resumes`: whether resume() follows.
 std::unique_ptr<Driver> open(const std::string& source, bool json, unsigned threads, std::vector<std::string> sets,
                              std::vector<std::string> plugin_path, const std::vector<std::string>& state,
                              bool resumes) {
   const SimulationOptions options{
       .threads = threads, .sets = std::move(sets), .plugin_path = std::move(plugin_path), .state = state_of(state)};
-  return std::make_unique<Driver>(Simulation(json ? open_parts(Description::parse(source), options, resumes)
-                                                  : open_parts(std::filesystem::path(source), options, resumes)));
+  auto samples = std::make_unique<Samples>();
+  auto parts = json ? open_parts(Description::parse(source), options, resumes, samples.get())
+                    : open_parts(std::filesystem::path(source), options, resumes, samples.get());
+  return std::make_unique<Driver>(Simulation(std::move(parts)), std::move(samples));
 }
 
 py::bytes bytes_of(const Checkpoint& checkpoint) {
@@ -122,7 +136,14 @@ PYBIND11_MODULE(_grit, module) {
            [](Driver& driver, const std::string& name, double stiffness, double damping) {
              driver.set_engine(name, {stiffness, damping});
            })
-      .def("remove_engine", &Driver::remove_engine);
+      .def("remove_engine", &Driver::remove_engine)
+      .def("probes",
+           [](Driver& driver) {
+             std::map<std::string, std::vector<ChannelFacts>> all;
+             for (const ProbeGroup& probe : driver.probes()) all[probe.name] = columns_of(probe);
+             return all;
+           })
+      .def("samples", &Driver::samples);
   simulation.def("picture", [](Driver& driver, const std::string& view, const std::string& color) {
     const World& world = driver.world();
     return picture_of(driver.simulation().parts().opened->scene.description->title, world, view, color);

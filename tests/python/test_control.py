@@ -5,17 +5,21 @@ usage: test_control.py GRIT     the module is that of GRIT's build folder
 """
 
 import io
+import json
 import os
 import pathlib
 import pickle
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 import unittest.mock
 
 from falling import GRIT, MM, InAFolder, long_scene, scene, state, state_of_a_whole_run
+
+import numpy
 
 import grit
 from grit import compiled, progress
@@ -132,6 +136,38 @@ class Callbacks(unittest.TestCase):
             return
         self.assertEqual(series.to_pandas().loc[sim.time, "count"], 48)
         self.assertIsInstance(series.to_pandas(), pandas.DataFrame)
+
+    def test_probes_of_the_description(self):
+        described = scene((20, 10), probes={"packing": {"type": "packing", "every_steps": 10}, "walls": {"type": "walls", "every_steps": 5}})
+        sim = grit.Simulation(described)
+        self.assertEqual(len(sim.series("packing")["time"]), 0)
+        self.assertEqual(sim.series("walls")["lid_force"].shape, (0, 3))
+        sim.run()
+        packing, walls = sim.series("packing"), sim.series("walls")
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "scene.json"
+            file.write_text(json.dumps(described))
+            subprocess.run([GRIT, "run", file, "--out", file.parent / "out", "--quiet", "--no-report"], check=True, stdout=subprocess.DEVNULL)
+            written = grit.open(file.parent / "out").series
+            for name, samples in (("packing", packing), ("walls", walls)):
+                self.assertEqual(sorted(samples), sorted(one.partition("/")[2] for one in written if one.startswith(name + "/")))
+                for channel in samples:
+                    numpy.testing.assert_array_equal(samples[channel], written[f"{name}/{channel}"])
+                    self.assertEqual(samples.units(channel), written.units(f"{name}/{channel}"))
+        self.assertEqual(packing["step"].tolist(), [0, 10, 20, 30])
+        self.assertEqual(walls["lid_force"].shape, (len(walls["time"]), 3))
+        with self.assertRaisesRegex(KeyError, "there is no channel 'lid_forc'; did you mean 'lid_force'"):
+            walls["lid_forc"]
+        with self.assertRaisesRegex(KeyError, "there is no probe 'walks'; did you mean 'walls'"):
+            sim.series("walks")
+        with self.assertRaisesRegex(grit.Error, "the description has a probe 'walls'; choose another name"):
+            sim.probe("walls", every_steps=1)(lambda: {"value": 1})
+        try:
+            import pandas
+        except ImportError:
+            return
+        self.assertEqual(packing.to_pandas().loc[sim.time, "step"], 30)
+        self.assertNotIn("lid_force", walls.to_pandas())
 
     def test_what_a_probe_may_not_return(self):
         for value, said in ((3.0, "returned float; allowed is a dict"), ({"force": [1, 2]}, "a value that is no number"), ({"time": 1}, "which every sample has")):

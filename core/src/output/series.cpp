@@ -78,24 +78,14 @@ Series::~Series() { mark_.set(); }
 
 Series::Table Series::create(const ProbeGroup& probe) {
   auto group = file_.create_group(probe.name);
-  Table table{column<double>(group, {"time", "s", "simulated time since the start of the run", {}}),
-              column<std::uint64_t>(group, {"step", "1", "steps since the start of the run", {}}),
-              {},
-              {},
-              {},
-              0};
+  Table table{column<double>(group, time_column), column<std::uint64_t>(group, step_column), {}, {}, {}, 0};
   for (const auto& channel : probe.channels) table.columns.push_back({column<double>(group, channel), {}});
   return table;
 }
 
 Series::Table Series::reopen(const ProbeGroup& probe, std::uint64_t samples) {
   const auto group = file_.group(probe.name);
-  Table table{reopened(group, {"time", "s", "", {}}, samples),
-              reopened(group, {"step", "1", "", {}}, samples),
-              {},
-              {},
-              {},
-              samples};
+  Table table{reopened(group, time_column, samples), reopened(group, step_column, samples), {}, {}, {}, samples};
   for (const auto& channel : probe.channels) table.columns.push_back({reopened(group, channel, samples), {}});
   return table;
 }

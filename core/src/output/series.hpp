@@ -18,6 +18,10 @@ struct Flushing {
   std::chrono::steady_clock::duration interval = std::chrono::seconds(1);
 };
 
+/// Columns that each probe has before its channels.
+inline const Channel time_column{"time", "s", "simulated time since the start of the run", {}},
+    step_column{"step", "1", "steps since the start of the run", {}};
+
 /// One group per probe with `time` [s], `step` and one dataset per channel: first dimension the samples, then the
 /// channel's shape; attributes `units` (UDUNITS) and `long_name`. During a flush, when the file is temporarily
 /// inconsistent, it has a WritingMark. Flushed samples stay readable if the process is killed. If it is killed during a

@@ -66,10 +66,10 @@ struct Simulation::Parts {
 };
 
 /// The parts of a simulation of a file, or of a description made by a program. `resumes`: without bodies, so that
-/// resume() has to follow.
+/// resume() has to follow. `record`: as for Parts.
 std::unique_ptr<Simulation::Parts> open_parts(const std::filesystem::path& file, const SimulationOptions& options,
-                                              bool resumes);
+                                              bool resumes, Recorder* record = nullptr);
 std::unique_ptr<Simulation::Parts> open_parts(const Description& description, const SimulationOptions& options,
-                                              bool resumes);
+                                              bool resumes, Recorder* record = nullptr);
 
 }  // namespace grit

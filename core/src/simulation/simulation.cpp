@@ -21,17 +21,19 @@ std::shared_ptr<const Registry> registry_of(const SimulationOptions& options) {
 }
 
 std::unique_ptr<Simulation::Parts> made(std::shared_ptr<const Registry> registry, Document document,
-                                        const SimulationOptions& options, bool resumes) {
+                                        const SimulationOptions& options, bool resumes, Recorder* record) {
   Scene scene = read_scene(std::move(document), *registry);
   const auto opened = std::make_shared<OpenedScene>(std::move(registry), std::move(scene));
   return std::make_unique<Simulation::Parts>(
-      opened, resumes ? opened->prepare_to_resume(options.state) : opened->prepare(options.state), options.threads);
+      opened, resumes ? opened->prepare_to_resume(options.state) : opened->prepare(options.state), options.threads,
+      record);
 }
 
-std::unique_ptr<Simulation::Parts> made(Document written, const SimulationOptions& options, bool resumes) {
+std::unique_ptr<Simulation::Parts> made(Document written, const SimulationOptions& options, bool resumes,
+                                        Recorder* record = nullptr) {
   auto registry = registry_of(options);
   Document document = expanded_document(std::move(written), options.sets, *registry, sets_by);
-  return made(std::move(registry), std::move(document), options, resumes);
+  return made(std::move(registry), std::move(document), options, resumes, record);
 }
 
 std::unique_ptr<Simulation::Parts> resumed(std::unique_ptr<Simulation::Parts> parts, const SimulationOptions& options) {
@@ -42,15 +44,15 @@ std::unique_ptr<Simulation::Parts> resumed(std::unique_ptr<Simulation::Parts> pa
 }  // namespace
 
 std::unique_ptr<Simulation::Parts> open_parts(const std::filesystem::path& file, const SimulationOptions& options,
-                                              bool resumes) {
+                                              bool resumes, Recorder* record) {
   auto registry = registry_of(options);
   Document document = load_document(file, options.sets, *registry, sets_by);
-  return made(std::move(registry), std::move(document), options, resumes);
+  return made(std::move(registry), std::move(document), options, resumes, record);
 }
 
 std::unique_ptr<Simulation::Parts> open_parts(const Description& description, const SimulationOptions& options,
-                                              bool resumes) {
-  return made(Document(description, "description"), options, resumes);
+                                              bool resumes, Recorder* record) {
+  return made(Document(description, "description"), options, resumes, record);
 }
 
 Simulation::Simulation(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}

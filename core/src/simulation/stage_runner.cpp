@@ -56,11 +56,13 @@ void StageRunner::start() {
   begin_recording();
 }
 
-void StageRunner::begin_recording() {
+std::vector<ProbeGroup> StageRunner::probes() const {
   std::vector<ProbeGroup> groups;
   for (const Observer& observer : observers_) groups.push_back(observer.group());
-  recorder_.begin(world_, groups);
+  return groups;
 }
+
+void StageRunner::begin_recording() { recorder_.begin(world_, probes()); }
 
 void StageRunner::resume(const Checkpoint& checkpoint) try {
   Archive archive(checkpoint.state);

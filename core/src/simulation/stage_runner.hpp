@@ -64,6 +64,8 @@ class StageRunner {
   void finish(RunSummary& summary);
   /// All figures of the summary but status and message.
   void fill(RunSummary& summary) const;
+  /// The probes, in the order of the recorder; after prepare().
+  std::vector<ProbeGroup> probes() const;
   double output_seconds() const { return phases_[1].seconds; }
 
  private:
