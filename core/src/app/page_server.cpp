@@ -221,10 +221,10 @@ class PageServer {
   tcp::acceptor acceptor_;
   asio::local::stream_protocol::socket control_;
   LivePage& page_;
-  asio::steady_timer news_{io_, Steady::time_point::max()};   ///< cancelled to wake waiting requests
-  std::map<std::string, Steady::time_point> readers_;         ///< open pages and the times of their last requests
-  std::vector<Steady::time_point> opened_;                    ///< send times of pages that have not requested news yet
-  Steady::time_point refreshed_ = Steady::time_point::min();  ///< when the folder was read last
+  asio::steady_timer news_{io_, Steady::time_point::max()};  ///< cancelled to wake waiting requests
+  std::map<std::string, Steady::time_point> readers_;        ///< open pages and the times of their last requests
+  std::vector<Steady::time_point> opened_;                   ///< send times of pages that have not requested news yet
+  Steady::time_point refreshed_{};                           ///< when the folder was read last
   std::string progress_;
   bool ended_ = false;
   std::size_t sessions_ = 0;
