@@ -181,7 +181,7 @@ TEST_F(Calibrations, EndIfTheBaseIsEdited) {
   const auto outcome = running.finish();
   EXPECT_EQ(outcome.status, 5);
   EXPECT_THAT(outcome.err, HasSubstr("fall.json: was edited while the calibration ran"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "results/damping/trials/0003"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results/damping/fitted.json"));
 }
 
 TEST_F(Calibrations, LeaveNoRunsWhenKilled) {

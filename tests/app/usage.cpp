@@ -66,7 +66,8 @@ TEST(Usage, ResultsHaveTheNameOfTheFile) {
     const auto run = grit_in(folder.path(), {"run", name});
     EXPECT_EQ(run.status, 1);
     EXPECT_THAT(run.err,
-                HasSubstr(std::string(name) + ": gives results no name; rename the file, or give a folder with --out"));
+                HasSubstr(std::string(name) +
+                          ": no folder of results can have this name; rename the file, or give a folder with --out"));
     EXPECT_EQ(grit_in(folder.path(), {"run", name, "--out", "named", "--overwrite", "-q"}).status, 0);
   }
 }

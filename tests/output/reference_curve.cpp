@@ -73,7 +73,7 @@ TEST(ReferenceCurves, NeedTwoPointsWithRisingAbscissa) {
   const auto mistyped = folder.write("mistyped.csv", "x,y\n0,1\n1,2\n30,3\n3,4\n4,5\n").string();
   EXPECT_EQ(error_of({mistyped, "x", "y"}),
             mistyped +
-                ": 2 of 5 points are not above all before in x, the first in row 4; sort the rows, or give one "
+                ": 2 of 5 points do not exceed all earlier ones in x, the first in row 4; sort the rows, or give one "
                 "branch of a loop");
 }
 

@@ -88,7 +88,8 @@ bool has_series(const std::filesystem::path& folder) {
 std::filesystem::path default_results(const std::filesystem::path& file) {
   const auto name = file.stem();
   if (name == "." || name == ".." || name.empty())
-    throw UsageError(file.string() + ": gives results no name; rename the file, or give a folder with --out");
+    throw UsageError(file.string() +
+                     ": no folder of results can have this name; rename the file, or give a folder with --out");
   return "results" / name;
 }
 

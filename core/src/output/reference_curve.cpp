@@ -14,7 +14,7 @@
 namespace grit {
 namespace {
 
-/// Part of the points whose abscissae may fall back.
+/// Largest fraction of the points that may be omitted because their abscissae do not rise.
 constexpr double most_omitted = 0.25;
 
 ReferencePoints thinned(ReferencePoints points) {
@@ -34,7 +34,7 @@ ReferencePoints thinned(ReferencePoints points) {
 ReferencePoints read_reference(const ReferenceCurve& curve) {
   const auto columns = read_columns(curve.file, {curve.x, curve.y});
   ReferencePoints points;
-  std::size_t omitted = 0, first = 0;  // which do not rise, such as noise of a transducer; the first one
+  std::size_t omitted = 0, first = 0;  // points that do not rise, as with a noisy transducer
   for (std::size_t i = 0; i < columns[0].size(); ++i) {
     const double x = columns[0][i], y = columns[1][i];
     if (!std::isfinite(x) || !std::isfinite(y)) continue;
@@ -44,7 +44,7 @@ ReferencePoints read_reference(const ReferenceCurve& curve) {
   if (points.x.size() < 2) throw FileError(curve.file + ": fewer than two points with rising " + curve.x);
   if (static_cast<double>(omitted) > most_omitted * static_cast<double>(points.x.size() + omitted))
     throw FileError(
-        fmt::format("{}: {} of {} points are not above all before in {}, the first in row {}; sort the rows, "
+        fmt::format("{}: {} of {} points do not exceed all earlier ones in {}, the first in row {}; sort the rows, "
                     "or give one branch of a loop",
                     curve.file, omitted, points.x.size() + omitted, curve.x, first));
   return points;

@@ -13,7 +13,7 @@ struct ReferencePoints {
 };
 
 /// The finite points of the file whose abscissae exceed all before. Throws FileError as read_columns() does, or if
-/// there are fewer than two such points, or more than a quarter of the finite ones is not among them.
+/// there are fewer than two such points, or more than a quarter of the finite points would be omitted.
 ReferencePoints read_reference(const ReferenceCurve& curve);
 
 /// Reads the reference curves of a description before its run. Throws PlacedError with every file at fault. Returns

@@ -264,7 +264,7 @@ void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (summary.status != "failed") {
     for (const char* file : {"packing.txt", "picture.svg"}) expect_no_other(file);
     write_grains(options_.folder / "packing.txt", world, comment_on(world, options_.title));
-  } else if (!has_other("packing.txt")) {  // that of an interruption is not the end's
+  } else if (!has_other("packing.txt")) {  // one from an interruption does not belong to the end
     std::error_code ignored;
     std::filesystem::remove(options_.folder / "packing.txt", ignored);
   }

@@ -15,8 +15,7 @@
 
 namespace grit {
 
-/// Around grains that are no specimen, such as a heap on a wide floor, the void ratio is above this. It is not shown
-/// then.
+/// Above this void ratio the specimen is nearly empty, as with a heap on a wide floor, and its state is not shown.
 inline constexpr double most_void_ratio = 10;
 
 /// A probe in the results: a group of series.

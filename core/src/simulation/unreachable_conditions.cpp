@@ -11,7 +11,7 @@
 namespace grit {
 namespace {
 
-/// Of products of values in a description.
+/// Relative error of products of values in a description.
 constexpr double rounding = 1e-9;
 
 using Complaints = std::vector<Complaint>;
