@@ -2,7 +2,9 @@
 
 import base64
 import pathlib
+import subprocess
 
+from . import optional
 from .errors import FileError
 
 
@@ -21,11 +23,15 @@ class Picture:
         return "<picture; notebooks show it, save(path) writes it>"
 
     def save(self, path):
-        """Writes the SVG."""
+        """Writes an SVG, or a PNG of twice its size."""
         path = pathlib.Path(path)
-        if path.suffix != ".svg":
-            raise ValueError(f"path: found {str(path)!r}; allowed is a name that ends in .svg")
+        if path.suffix not in (".svg", ".png"):
+            raise ValueError(f"path: found {str(path)!r}; allowed is a name that ends in .svg or .png")
+        data = self.svg.encode()
+        if path.suffix == ".png":
+            draws = optional.program("rsvg-convert", "librsvg2-bin", "a picture as PNG")
+            data = subprocess.run([draws, "--zoom", "2"], input=data, stdout=subprocess.PIPE, check=True).stdout
         try:
-            path.write_text(self.svg, encoding="utf-8")
+            path.write_bytes(data)
         except OSError as error:
             raise FileError(f"{path}: cannot be written: {error.strerror}") from error

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy
 
+from . import optional
 from .errors import Error, UnknownName
 
 
@@ -67,27 +68,33 @@ class Samples(Mapping):
 
     def __init__(self, core, name):
         self.name, self._core = name, core
-        self._units = {channel: unit for channel, unit, _ in core.probes()[name]}
+        self._about = {channel: (unit, about) for channel, unit, about in core.probes()[name]}
 
     def __getitem__(self, name):
-        if name not in self._units:
-            raise UnknownName("channel", name, list(self))
+        self._of(name)
         return self._core.samples(self.name, name)
 
+    def _of(self, name):
+        if name not in self._about:
+            raise UnknownName("channel", name, list(self))
+        return self._about[name]
+
     def __iter__(self):
-        return iter(self._units)
+        return iter(self._about)
 
     def __len__(self):
-        return len(self._units)
+        return len(self._about)
 
     def __repr__(self):
         return f"<probe {self.name!r}: {len(self['time'])} samples of {', '.join(self)}>"
 
     def units(self, name):
-        """The unit of a channel."""
-        if name not in self._units:
-            raise UnknownName("channel", name, list(self))
-        return self._units[name]
+        """Unit in UDUNITS notation, "1" if dimensionless."""
+        return self._of(name)[0]
+
+    def about(self, name):
+        """Description of a channel."""
+        return self._of(name)[1]
 
     def to_pandas(self):
         """A pandas DataFrame of the channels with one value a sample, with `time` as its index."""
@@ -95,5 +102,4 @@ class Samples(Mapping):
 
 
 def _by_time(columns):
-    import pandas
-    return pandas.DataFrame(dict(columns)).set_index("time")
+    return optional.module("pandas", "python3-pandas", "to_pandas").DataFrame(dict(columns)).set_index("time")

@@ -23,6 +23,7 @@ from collections.abc import Mapping, Sequence
 import h5py
 import numpy
 
+from . import optional
 from .errors import ResultsError, UnknownResult
 
 
@@ -369,8 +370,7 @@ class Run:
 
     def plot(self, *names, against=None, axes=None):
         """Draws channels of single numbers, "probe/channel", over time or over the channel `against`, with matplotlib. Returns its axes."""
-        import matplotlib.pyplot
-        axes = axes or matplotlib.pyplot.subplots()[1]
+        axes = axes or optional.module("matplotlib.pyplot", "python3-matplotlib", "run.plot").subplots()[1]
         for name in names:
             x = against or f"{name.partition('/')[0]}/time"
             axes.plot(self.series[x], self.series[name], label=name)

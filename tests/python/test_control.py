@@ -154,6 +154,7 @@ class Callbacks(unittest.TestCase):
                 for channel in samples:
                     numpy.testing.assert_array_equal(samples[channel], written[f"{name}/{channel}"])
                     self.assertEqual(samples.units(channel), written.units(f"{name}/{channel}"))
+                    self.assertEqual(samples.about(channel), written.about(f"{name}/{channel}"))
         self.assertEqual(packing["step"].tolist(), [0, 10, 20, 30])
         self.assertEqual(walls["lid_force"].shape, (len(walls["time"]), 3))
         with self.assertRaisesRegex(KeyError, "there is no channel 'lid_forc'; did you mean 'lid_force'"):

@@ -5,7 +5,9 @@ usage: test_misuse.py GRIT     the module is that of GRIT's build folder
 """
 
 import pickle
+import sys
 import unittest
+import unittest.mock
 
 from falling import MM, InAFolder, scene, state, state_of_a_whole_run
 
@@ -128,6 +130,19 @@ class Checkpoints(InAFolder):
         self.assertRegex(repr(sim.save()), r"^<checkpoint: [0-9.e-]+ s, step 10, stage 'fall', [0-9.]+ MB>$")
 
 
+class Missing(InAFolder):
+    def test_modules_and_programs(self):
+        sim = grit.Simulation(scene())
+        sim.probe("speed", every_steps=1)(lambda simulation: {"largest": 1.0})
+        sim.run(1)
+        with unittest.mock.patch.dict(sys.modules, {"pandas": None}), self.assertRaisesRegex(ImportError, "^to_pandas needs pandas: .*; install it: apt install python3-pandas$"):
+            sim.series("speed").to_pandas()
+        with unittest.mock.patch.dict("os.environ", {"PATH": str(self.folder)}), self.assertRaisesRegex(
+                FileNotFoundError, "^a picture as PNG needs rsvg-convert, which is not there; install it: apt install librsvg2-bin$"):
+            sim.show().save(self.folder / "a.png")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
 class Values(unittest.TestCase):
     def test_that_have_no_effect_any_more(self):
         sim = grit.Simulation(scene())
@@ -159,7 +174,7 @@ class Arguments(InAFolder):
             ValueError: [
                 lambda: sim.run(-1), lambda: sim.set("", {}), lambda: sim.save(""), lambda: sim.save("a\0b"), lambda: sim.every(steps=0), lambda: sim.every(time=-1),
                 lambda: sim.probe("", every_steps=1), lambda: sim.probe("a", every_steps=1, units={"a": "blub"}), lambda: sim.probe("a", every_steps=1, units={"a": 3}),
-                lambda: sim.stress([0, 0, 0], [1, 1, 0]), lambda: sim.show().save(place / "a.png"), lambda: grit.Simulation(scene(), threads=0),
+                lambda: sim.stress([0, 0, 0], [1, 1, 0]), lambda: sim.show().save(place / "a.pdf"), lambda: grit.Simulation(scene(), threads=0),
                 lambda: grit.Simulation(scene(), threads=10**20), lambda: grit.Simulation("a\0b")],
             grit.FileError: [
                 lambda: sim.resume(place / "nothing.h5"), lambda: sim.save(place / "nowhere/a.h5"), lambda: sim.show().save(place / "nowhere/a.svg"),

@@ -9,6 +9,7 @@ import copy
 import gc
 import pathlib
 import pickle
+import re
 import subprocess
 import tempfile
 import unittest
@@ -324,6 +325,10 @@ class World(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             picture.save(pathlib.Path(folder) / "grains.svg")
             self.assertEqual((pathlib.Path(folder) / "grains.svg").read_text(), picture.svg)
+            picture.save(pathlib.Path(folder) / "grains.png")
+            width = int(re.search(r'<svg[^>]* width="(\d+)', picture.svg)[1])
+            png = (pathlib.Path(folder) / "grains.png").read_bytes()
+            self.assertEqual((png[:8], int.from_bytes(png[16:20], "big")), (b"\x89PNG\r\n\x1a\n", 2 * width))
         self.assertNotIn('class="wall"', picture.svg, "the lid is far above")
         low = scene()
         low["walls"]["lid"]["corner"][2] = 7 * MM
