@@ -33,7 +33,8 @@ write_basic_package_version_file(${build_package}/grit-config-version.cmake COMP
 string(REGEX MATCH "^[0-9]+" major "${CMAKE_CXX_COMPILER_VERSION}")
 file(WRITE ${build_package}/${GRIT_ARCH}/grit-compiler.cmake
      "set(grit_COMPILER \"${CMAKE_CXX_COMPILER_ID} ${major}\")\nset(grit_CXX_COMPILER \"${CMAKE_CXX_COMPILER}\")\n")
-configure_file(cmake/grit-config.cmake ${build_package}/grit-config.cmake COPYONLY)
+file(RELATIVE_PATH grit_command /${package} /${CMAKE_INSTALL_BINDIR}/grit)
+configure_file(cmake/grit-config.cmake.in ${build_package}/grit-config.cmake @ONLY)
 configure_file(cmake/GritPlugin.cmake ${build_package}/GritPlugin.cmake COPYONLY)
 file(GLOB contracts CONFIGURE_DEPENDS ${grit_TESTING_SOURCES}/*.cpp)
 foreach(contract ${contracts})
@@ -41,7 +42,7 @@ foreach(contract ${contracts})
   configure_file(${contract} ${build_package}/testing/${file} COPYONLY)
 endforeach()
 install(FILES ${contracts} DESTINATION ${package}/testing COMPONENT grit-dev)
-install(FILES cmake/grit-config.cmake cmake/GritPlugin.cmake ${build_package}/grit-config-version.cmake
+install(FILES ${build_package}/grit-config.cmake cmake/GritPlugin.cmake ${build_package}/grit-config-version.cmake
         DESTINATION ${package} COMPONENT grit-dev)
 install(FILES ${build_package}/${GRIT_ARCH}/grit-compiler.cmake DESTINATION ${package}/${GRIT_ARCH} COMPONENT grit-dev)
 install(EXPORT grit NAMESPACE grit:: FILE grit-targets.cmake DESTINATION ${package}/${GRIT_ARCH} COMPONENT grit-dev)

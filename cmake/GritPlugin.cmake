@@ -1,32 +1,37 @@
 # grit_plugin(<kind folder> <name> [LIBRARIES …]): builds <name>.cpp of the current folder into
 # <build>/lib/grit/<kind folder>/<name>.so, and test_<name>.cpp, if it exists and the project has found GTest, into a test
-# that has access to the same code, links grit::testing and runs in the plugin's folder. `cmake --install` installs the plugin
+# that has access to the same code, links the contract of its kind and runs in the plugin's folder. `cmake --install` installs the plugin
 # into lib/grit/<arch>, where grit of the same instruction set searches. The target grit_plugins builds all plugins of a
 # project. Part of the installed SDK.
 include(GNUInstallDirs)
 include(GoogleTest)
 
-# Defines the target grit::testing if the project has found GTest: the contracts that every plugin of a kind must pass
-# (grit/testing), compiled once per project. A program links those whose headers it includes.
+# Contracts are tests that every plugin of a kind must pass (grit/testing): each is a library that is compiled once per project, when
+# a test links it. grit::testing is all of them.
 function(grit_testing)
   if(TARGET grit_testing OR NOT TARGET GTest::gtest)
     return()
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${grit_TESTING_SOURCES}/*.cpp)
-  add_library(grit_testing STATIC EXCLUDE_FROM_ALL ${sources})
-  target_compile_options(grit_testing PRIVATE -Wall -Wextra $<$<NOT:$<CONFIG:Debug>>:-O1>)
-  # Nearly all of a test's compilation is its headers'.
-  target_precompile_headers(grit_testing PRIVATE
-    <Eigen/Core> <Eigen/Geometry> <nlohmann/json.hpp> <functional> <map> <memory> <optional> <set> <sstream> <string>
-    <variant> <vector> <gtest/gtest.h> $<$<TARGET_EXISTS:GTest::gmock>:<gmock/gmock.h$<ANGLE-R>>)
-  set_target_properties(grit_testing PROPERTIES UNITY_BUILD OFF)  # one object per contract, so that a program links only those it uses
-  target_link_libraries(grit_testing PUBLIC grit::grit grit::sdk GTest::gtest)
+  add_library(grit_testing INTERFACE)
   add_library(grit::testing ALIAS grit_testing)
+  file(GLOB sources CONFIGURE_DEPENDS ${grit_TESTING_SOURCES}/*.cpp)
+  foreach(source ${sources})
+    cmake_path(GET source STEM contract)
+    set(target grit_testing_${contract})
+    add_library(${target} STATIC EXCLUDE_FROM_ALL ${source})
+    target_compile_options(${target} PRIVATE -Wall -Wextra $<$<NOT:$<CONFIG:Debug>>:-O1>)
+    target_link_libraries(${target} PUBLIC grit::grit grit::sdk GTest::gtest)
+    if(TARGET grit_precompiled_testing)  # within grit's own tree
+      target_precompile_headers(${target} REUSE_FROM grit_precompiled_testing)
+    endif()
+    target_link_libraries(grit_testing INTERFACE ${target})
+  endforeach()
 endfunction()
 
 function(grit_plugin folder name)
   cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
   set(kinds contacts geometry probes engines scenarios bodies)
+  set(contracts contact_law geometry probe engine scenario none)
   if(NOT folder IN_LIST kinds)
     list(JOIN kinds ", " allowed)
     message(FATAL_ERROR "grit_plugin(${folder} ${name}): \"${folder}\" is no kind of plugin; allowed are ${allowed}")
@@ -58,9 +63,12 @@ function(grit_plugin folder name)
     add_executable(test_${target} test_${name}.cpp)
     # Only the plugin is fully optimised; its test builds faster.
     target_compile_options(test_${target} PRIVATE -Wall -Wextra $<$<NOT:$<CONFIG:Debug>>:-O1>)
-    target_link_libraries(test_${target} PRIVATE ${target}_objects grit::testing GTest::gmock GTest::gtest_main)
-    if(TARGET grit_precompiled_hidden)
-      target_precompile_headers(test_${target} REUSE_FROM grit_testing)
+    list(FIND kinds ${folder} kind)
+    list(GET contracts ${kind} contract)
+    target_link_libraries(test_${target} PRIVATE ${target}_objects $<TARGET_NAME_IF_EXISTS:grit_testing_${contract}> GTest::gmock
+                                                 GTest::gtest_main)
+    if(TARGET grit_precompiled_testing)
+      target_precompile_headers(test_${target} REUSE_FROM grit_precompiled_testing)
       target_include_directories(test_${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     endif()
     gtest_discover_tests(test_${target} TEST_PREFIX "${folder}/${name}: " DISCOVERY_MODE PRE_TEST
