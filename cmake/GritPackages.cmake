@@ -35,10 +35,10 @@ set(version ${version}-1)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${maintainer}")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib/grit)
 
-# package(NAME SECTION SUMMARY TEXT FIELD VALUE…): what dpkg shows, and other fields of its control file.
+# package(NAME SECTION SUMMARY TEXT FIELD VALUE…): what dpkg shows, and other fields of its control file. SHLIBDEPS ON for those with
+# programs: CPack looks into each file.
 function(package name section summary text)
   string(TOUPPER ${name} upper)
   set(prefix CPACK_DEBIAN_${upper}_)
@@ -65,7 +65,7 @@ package(grit science "discrete element method for sand, shear zones and silos"
   "${about}
 This package has the program and its plugins for several instruction sets,
 of which it takes the best that the processor has."
-  RECOMMENDS "librsvg2-bin" SUGGESTS "grit-doc, python3-grit")
+  SHLIBDEPS ON RECOMMENDS "librsvg2-bin" SUGGESTS "grit-doc, python3-grit")
 package(grit-dev libdevel "discrete element method - headers for plugins and programs"
   "${about}
 This package has the headers, the CMake package and the contracts that test
@@ -82,7 +82,7 @@ endif()
 package(python3-grit python "discrete element method - Python module"
   "${about}
 This package has the Python module, which drives simulations and reads results."
-  DEPENDS "grit (= ${version}), ${python_depends}, python3-numpy, python3-h5py"
+  SHLIBDEPS ON DEPENDS "grit (= ${version}), ${python_depends}, python3-numpy, python3-h5py"
   SUGGESTS "python3-matplotlib")
 package(grit-doc doc "discrete element method - documentation"
   "${about}
