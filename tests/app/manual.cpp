@@ -1,6 +1,7 @@
 // Manual pages: what they hold, and that formatters take them without a warning.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <regex>
 
 #include "support/program.hpp"
@@ -61,6 +62,25 @@ TEST(Manual, OfGritHasCommandsStatusesVariablesAndFiles) {
     EXPECT_THAT(page, HasSubstr(std::string(".TP\n") + term + '\n'));
 }
 
+TEST(Manual, IsInAscii) {
+  const OwnFolder folder;
+  auto commands = listed_commands(folder.path());
+  commands.emplace_back("");
+  for (const auto& command : commands) {
+    const auto page = shell(folder.path(), "'" GRIT_BINARY "' manual " + command).out;
+    EXPECT_TRUE(std::ranges::all_of(page, [](unsigned char byte) { return byte < 0x80; })) << page;
+  }
+  EXPECT_THAT(grit_in(folder.path(), {"manual", "run"}).out, HasSubstr("\\fIFILE\\&...\\fR [\\fIoptions\\fR]\n"));
+}
+
+TEST(Manual, TellsWhereTheDocumentationIs) {
+  const OwnFolder folder;
+  EXPECT_THAT(plain(grit_in(folder.path(), {"manual"}).out), HasSubstr("\n.TP\n/usr/share/doc/grit\nPages in docs"));
+  for (const auto& command : listed_commands(folder.path()))
+    EXPECT_THAT(plain(grit_in(folder.path(), {"manual", command}).out),
+                HasSubstr("\n.PP\nThe documentation is in share/doc/grit of"));
+}
+
 TEST(Manual, DoesNotDependOnTheMachine) {
   const OwnFolder folder;
   const auto on_one_core = [&](const std::string& command) {
@@ -68,7 +88,7 @@ TEST(Manual, DoesNotDependOnTheMachine) {
     return shell(folder.path(), "taskset -c " + core + " '" GRIT_BINARY "' manual " + command).out;
   };
   for (const char* command : {"run", "check", "study"}) {
-    EXPECT_THAT(on_one_core(command), HasSubstr("Default: all cores."));
+    EXPECT_THAT(std::regex_replace(on_one_core(command), std::regex("\n"), " "), HasSubstr("Default: all cores."));
     EXPECT_EQ(on_one_core(command), grit_in(folder.path(), {"manual", command}).out);
   }
 }
@@ -86,7 +106,9 @@ void expect_no_warnings(const std::string& formatter, const std::string& argumen
 }
 
 TEST(Manual, IsTakenByGroff) { expect_no_warnings("groff", "-man -ww -z -Tutf8 -rLL=78n"); }
-TEST(Manual, IsTakenByMandoc) { expect_no_warnings("mandoc", "-T lint -W warning"); }
+/// A character that a terminal of ASCII has no likeness of is a warning.
+TEST(Manual, IsWholeInATerminalOfAscii) { expect_no_warnings("groff", "-man -ww -z -Tascii -rLL=78n"); }
+TEST(Manual, IsTakenByMandoc) { expect_no_warnings("mandoc", "-T lint -W style"); }
 
 TEST(Manual, IsWrittenIntoAFolder) {
   const OwnFolder folder;

@@ -76,6 +76,14 @@ TEST_P(New, NamesAClassAsNothingElseIsNamed) {
   }
 }
 
+TEST_P(New, NamesTheGuideAndThePackagesOfItsTest) {
+  ASSERT_EQ(grit({"new", GetParam().kind, "my-own"}).status, 0);
+  const std::string readme = text_of(folder / "my-own/README.md"), packages = "libgtest-dev libgmock-dev",
+                    guide = std::string("docs/plugins/") + GetParam().page;
+  EXPECT_THAT(readme, AllOf(HasSubstr(guide + '`'), HasSubstr(packages)));
+  EXPECT_THAT(text_of(folder / "my-own/CMakeLists.txt"), HasSubstr(packages));
+}
+
 TEST_P(New, ReplacesNothing) {
   folder.write("mine.txt", "");
   std::filesystem::create_directories(folder / "my-own");

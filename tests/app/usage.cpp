@@ -35,6 +35,9 @@ TEST(Usage, HelpNamesEveryCommandAndStatus) {
   for (const auto& command : all_commands) EXPECT_THAT(help.out, HasSubstr("\n  " + command + " "));
   EXPECT_THAT(help.out, HasSubstr("0 done, 1 usage, 2 description, 3 plugin, 4 numerics, 5 files or disk"));
   EXPECT_THAT(help.out, HasSubstr("130 interrupted and saved"));
+  // That of the source tree, if the program has been built inside.
+  const bool inside = std::string(GRIT_BINARY).starts_with(GRIT_SOURCE_DIR "/");
+  EXPECT_THAT(help.out, HasSubstr(inside ? "\nDocumentation: " GRIT_SOURCE_DIR "/docs\n" : "\nDocumentation: "));
   EXPECT_LE(widest_line(help.out), 100u);
   EXPECT_EQ(grit_in(folder.path(), {"-h"}).out, help.out);
   EXPECT_EQ(grit_in(folder.path(), {"help"}).out, help.out);

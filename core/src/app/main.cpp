@@ -9,6 +9,7 @@
 #include "app/command.hpp"
 #include "app/completion.hpp"
 #include "app/early_exit.hpp"
+#include "app/installation.hpp"
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "format/message.hpp"
@@ -38,7 +39,11 @@ void print_usage(std::ostream& out) {
     else if (status != ExitStatus::done) out << ", ";
     out << static_cast<int>(status) << ' ' << name;
   }
-  out << ".\n";
+  const std::filesystem::path place = documentation();
+  out << ".\nDocumentation: "
+      << (place.empty() ? "the Debian package grit-doc, or docs of the source tree" : (place / "docs").string());
+  if (!place.empty()) out << "\nDescriptions of tests: " << (place / "sims").string();
+  out << '\n';
 }
 
 void print_version() {

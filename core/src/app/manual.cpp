@@ -15,7 +15,7 @@
 namespace grit {
 namespace {
 
-/// Text of the user's as roff shows it as it is, in any encoding; a line of it is no request.
+/// Text of the user's in ASCII, as roff shows it as it is, in any encoding; a line of it is no request.
 std::string roff(const std::string& text) {
   std::ostringstream out;
   if (text.starts_with('.') || text.starts_with('\'')) out << "\\&";
@@ -32,10 +32,31 @@ std::string roff(const std::string& text) {
       const int more = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
       std::uint32_t code = byte & (0x3Fu >> more);
       for (int k = 0; k < more; ++k) code = code << 6 | (static_cast<unsigned char>(text.at(++i)) & 0x3Fu);
-      out << "\\[u" << std::uppercase << std::hex << std::setw(4) << std::setfill('0') << code << ']';
+      // Formatters know no dots for terminals of ASCII.
+      if (code == U'…') out << "\\&...";
+      else out << "\\[u" << std::uppercase << std::hex << std::setw(4) << std::setfill('0') << code << ']';
     }
   }
   return out.str();
+}
+
+/// The same in lines of up to 80 characters, as formatters want them.
+std::string lines_of(const std::string& text) {
+  std::string lines;
+  std::istringstream words(text);
+  std::size_t width = 0;
+  for (std::string word; words >> word; width += word.size()) {
+    word = roff(word);
+    if (const bool full = width + 1 + word.size() > 80; full && width > 0) {
+      lines += '\n';
+      width = 0;
+    } else if (width > 0) {
+      lines += ' ';
+      ++width;
+    }
+    lines += word;
+  }
+  return lines;
 }
 
 std::string bold(const std::string& text) { return "\\fB" + roff(text) + "\\fR"; }
@@ -57,12 +78,12 @@ class Page {
     const BuildFacts& build = build_facts();
     out_ << ".TH " << roff(title) << " 1 " << build.date << " \"grit " << build.version
          << "\" \"User Commands\"\n.SH NAME\n"
-         << roff(name) << " \\- " << roff(doc) << '\n';
+         << lines_of(name + " - " + doc) << '\n';
   }
   void section(const char* title) { out_ << ".SH " << title << '\n'; }
   void line(const std::string& roff_text) { out_ << roff_text << '\n'; }
   void entry(const std::string& roff_term, const std::string& text) {
-    out_ << ".TP\n" << roff_term << '\n' << roff(text) << '\n';
+    out_ << ".TP\n" << roff_term << '\n' << lines_of(text) << '\n';
   }
   void exit_status() {
     section("EXIT STATUS");
@@ -75,6 +96,9 @@ class Page {
     for (const Command& c : commands())
       if (c.name != own) others += (others.empty() ? "" : ",\n") + bold(page_name(c.name)) + "(1)";
     line(others);
+    line(".PP\n" +
+         lines_of("The documentation is in share/doc/grit of the installation, /usr/share/doc/grit of Debian's "
+                  "package grit-doc. 'grit --help' prints the place."));
   }
 
  private:
@@ -88,10 +112,10 @@ void print_page_of_grit(std::ostream& out) {
   page.line(".br\n" + bold("grit") + ' ' + bold("help") + " [" + italic("COMMAND") + ']');
   page.line(".br\n" + bold("grit") + ' ' + bold("--version"));
   page.section("DESCRIPTION");
-  page.line(
-      roff("A JSON file describes a test of granular mechanics. grit runs it and writes curves, maps and pictures of "
-           "the grains. "
-           "Contact laws, walls, engines, probes and scenarios are plugins."));
+  page.line(lines_of(
+      "A JSON file describes a test of granular mechanics. grit runs it and writes curves, maps and pictures of "
+      "the grains. "
+      "Contact laws, walls, engines, probes and scenarios are plugins."));
   page.section("COMMANDS");
   for (const Command& c : commands())
     page.entry(bold(c.name) + (*c.synopsis == 0 ? "" : ' ' + italic(c.synopsis)), c.doc);
@@ -104,6 +128,11 @@ void print_page_of_grit(std::ostream& out) {
   page.section("FILES");
   page.line(roff("In the folder of results of a run:"));
   for (const Named& file : result_files()) page.entry(italic(file.name), sentence(file.doc));
+  page.line(".PP\n" + roff("The documentation:"));
+  page.entry(
+      italic("/usr/share/doc/grit"),
+      "Pages in docs and descriptions of tests in sims, by the Debian package grit-doc. Other installations have "
+      "them in share/doc/grit below their prefix, the source tree in its root. 'grit --help' prints the place.");
   page.see_also("");
 }
 
@@ -113,8 +142,7 @@ void print_page_of(const Command& command, std::ostream& out) {
   page.line(bold("grit") + ' ' + bold(command.name) + (*command.synopsis == 0 ? "" : ' ' + italic(command.synopsis)) +
             " [" + italic("options") + ']');
   page.section("DESCRIPTION");
-  page.line(roff(command.doc));
-  page.line(roff(command.text));
+  page.line(lines_of(std::string(command.doc) + ' ' + command.text));
   page.section("OPTIONS");
   const Options options(command);
   for (const auto& option : options.declared().options()) {

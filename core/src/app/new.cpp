@@ -1,12 +1,12 @@
 // `grit new`: a plugin of one's own outside the tree, from the worked example of its guide (docs/plugins).
 #include <algorithm>
-#include <boost/dll/runtime_symbol_info.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "app/installation.hpp"
 #include "app/options.hpp"
 #include "format/names.hpp"
 #include "grit/error.hpp"
@@ -137,13 +137,8 @@ std::string cmake_options() {
   const std::string version = compiler.substr(compiler.find(' ') + 1);
   options += std::string(" -DCMAKE_CXX_COMPILER=") + (compiler.starts_with("Clang") ? "clang++-" : "g++-") +
              version.substr(0, version.find('.'));
-  for (fs::path above = boost::dll::program_location().string(); above.has_relative_path();) {
-    above = above.parent_path();
-    for (const char* inner : {"cmake/grit", "lib/cmake/grit"})
-      if (std::error_code none; fs::exists(above / inner / "grit-config.cmake", none))
-        return options + " -Dgrit_DIR=" + (above / inner).string();
-  }
-  return options + " -DCMAKE_PREFIX_PATH=PREFIX";
+  const fs::path package = beside_program({"cmake/grit/grit-config.cmake", "lib/cmake/grit/grit-config.cmake"});
+  return options + (package.empty() ? " -DCMAKE_PREFIX_PATH=PREFIX" : " -Dgrit_DIR=" + package.parent_path().string());
 }
 
 std::string commands_text(const std::string& scene_file) {
@@ -153,20 +148,26 @@ std::string commands_text(const std::string& scene_file) {
 
 std::string readme(const Guide& guide, const std::string& name, const std::string& scene_file) {
   return "# " + name + "\nThis is " + guide.doc +
-         ", a plugin of grit. It begins as the worked example of the guide, `docs/plugins/" + guide.page +
+         ", a plugin of grit. It begins as the worked example of the guide, `" +
+         (documentation() / "docs/plugins" / guide.page).string() +
          "`, which has the rules for this kind.\n\n"
          "| file | |\n| --- | --- |\n| `" +
          name + ".hpp` | the code |\n| `" + name +
          ".cpp` | what grit loads: name, version, one line of text |\n| `test_" + name + ".cpp` | its tests |\n| `" +
-         scene_file + "` | a scene with it |\n\nBuild, test and use it:\n```sh\n" + commands_text(scene_file) +
-         "```\n`grit describe " + name + " --plugin-path build/lib/grit` prints its parameters.\n";
+         scene_file +
+         "` | a scene with it |\n\nBuild, test and use it; tests need GoogleTest (Debian: `libgtest-dev "
+         "libgmock-dev`):\n```sh\n" +
+         commands_text(scene_file) + "```\n`grit describe " + name +
+         " --plugin-path build/lib/grit` prints its parameters.\n";
 }
 
 std::string cmake_lists(const Guide& guide, const std::string& name) {
   const auto kind =
       std::ranges::find(kinds, std::string(guide.kind), [](const Kind& one) { return std::string(one.name); });
   return "cmake_minimum_required(VERSION 3.25)\nproject(" + name +
-         " VERSION 1.0.0 LANGUAGES CXX)\n\nfind_package(GTest)  # without it, no tests are built\n"
+         " VERSION 1.0.0 LANGUAGES CXX)\n\nfind_package(GTest)\nif(NOT TARGET GTest::gmock)\n"
+         "  message(STATUS \"GoogleTest is not found, so no tests are built; install it, on Debian: apt install "
+         "libgtest-dev libgmock-dev\")\nendif()\n"
          "find_package(grit " +
          build_facts().version + " REQUIRED)\nenable_testing()\n\ngrit_plugin(" + kind->folder + ' ' + name + ")\n";
 }
