@@ -16,9 +16,16 @@ install(DIRECTORY core/include/grit DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMP
 set(documentation ${CMAKE_INSTALL_DATADIR}/doc/grit)
 install(FILES LICENSE DESTINATION ${documentation} COMPONENT licence)  # packages have it in their file copyright
 install(FILES README.md CONTRIBUTING.md CHANGELOG.md CITATION.cff DESTINATION ${documentation} COMPONENT grit-doc)
-install(DIRECTORY docs sims DESTINATION ${documentation} COMPONENT grit-doc PATTERN Doxyfile EXCLUDE)
-install(DIRECTORY plugins bench DESTINATION ${documentation} COMPONENT grit-doc FILES_MATCHING PATTERN *.md)
+install(DIRECTORY docs sims DESTINATION ${documentation} COMPONENT grit-doc PATTERN Doxyfile EXCLUDE PATTERN site EXCLUDE)
+install(FILES bench/README.md DESTINATION ${documentation}/bench COMPONENT grit-doc)
+install(DIRECTORY plugins DESTINATION ${documentation} COMPONENT grit-doc
+        FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg)
 install(DIRECTORY python/examples DESTINATION ${documentation}/python COMPONENT grit-doc FILES_MATCHING PATTERN *.py)
+install(CODE "set(SOURCE \"${PROJECT_SOURCE_DIR}\")
+  set(DOCUMENTATION \"${documentation}\")
+  set(HEADERS \"${CMAKE_INSTALL_INCLUDEDIR}\")
+  set(PYTHON \"${GRIT_PYTHON_DIR}\")
+  include(\"${PROJECT_SOURCE_DIR}/cmake/InstalledDocs.cmake\")" COMPONENT grit-doc)
 if(TARGET grit_app)
   set_target_properties(grit_app PROPERTIES INSTALL_RPATH "$ORIGIN")
   install(TARGETS grit_app RUNTIME DESTINATION ${own})

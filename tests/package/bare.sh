@@ -52,6 +52,7 @@ print(grit.__file__, simulation.bodies.position.shape)
 print(grit.Run("results/box")) if hasattr(grit, "Run") else None'
 step manual and completion
 [[ $(man grit-run) == *--resume* ]]
+[[ $(grit --help) == *"Documentation: /usr/share/doc/grit/docs"* ]]
 man grit run > /dev/null
 bash -ic 'source /usr/share/bash-completion/bash_completion; _completion_loader grit; COMP_WORDS=(grit ca) COMP_CWORD=1; _grit grit; [[ ${COMPREPLY[*]} == calibrate ]]' 2> /dev/null
 step plugin

@@ -129,14 +129,15 @@ TEST(Debs, SayWhatTheyAre) {
 
 TEST(Debs, RunWhereTheyAreUnpacked) {
   const OwnFolder folder;
-  const auto outcome =
-      shell(folder.path(), "for each in '" DEBS
-                           "'/*.deb; do dpkg-deb -x $each .; done; "
-                           "env -u GRIT_ISA -u GRIT_PLUGIN_PATH usr/bin/grit plugins; "
-                           "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=usr/lib/python3/dist-packages /usr/bin/python3 -c "
-                           "'import grit; print(grit.__file__)'");
+  const auto outcome = shell(
+      folder.path(), "for each in '" DEBS
+                     "'/*.deb; do dpkg-deb -x $each .; done; "
+                     "env -u GRIT_ISA -u GRIT_PLUGIN_PATH usr/bin/grit plugins; env -u GRIT_ISA usr/bin/grit --help; "
+                     "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=usr/lib/python3/dist-packages /usr/bin/python3 -c "
+                     "'import grit; print(grit.__file__)'");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("usr/lib/grit/" OTHER "/contacts/" LAW ".so"),
+                                 HasSubstr("\nDocumentation: " + (folder / "usr/share/doc/grit/docs").string() + '\n'),
                                  HasSubstr("usr/lib/python3/dist-packages/grit/__init__.py")));
 }
 

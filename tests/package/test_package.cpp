@@ -118,6 +118,16 @@ TEST(Package, TakesTheBestUnlessTold) {
   EXPECT_EQ(run(folder, "", "results").at("grit").at("arch"), own);
 }
 
+TEST(Package, TellsWhereItsDocumentationIs) {
+  const OwnFolder folder;
+  const auto place = fs::path(GRIT_BINARY).parent_path().parent_path() / "share/doc/grit";
+  for (const auto& isa : {own, other})
+    EXPECT_THAT(grit(folder.path(), isa, {"--help"}).out,
+                AllOf(HasSubstr("\nDocumentation: " + (place / "docs").string() + '\n'),
+                      HasSubstr("\nDescriptions of tests: " + (place / "sims").string() + '\n')));
+  EXPECT_TRUE(fs::exists(place / "docs/README.md") && fs::exists(place / "sims/column/quick.json"));
+}
+
 TEST(Package, AgreesToRoundOff) {
   const OwnFolder folder;
   run(folder, own, "own"), run(folder, other, "other");
