@@ -58,7 +58,7 @@ function(grit_plugin folder name)
   endif()
   add_dependencies(grit_plugins ${target})
 
-  if(TARGET GTest::gtest_main AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/test_${name}.cpp)
+  if(TARGET GTest::gtest_main AND TARGET GTest::gmock AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/test_${name}.cpp)
     grit_testing()
     add_executable(test_${target} test_${name}.cpp)
     # Only the plugin is fully optimised; its test builds faster.
