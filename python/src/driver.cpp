@@ -6,6 +6,7 @@
 
 #include "format/number.hpp"
 #include "grit/error.hpp"
+#include "interpreter.hpp"
 #include "simulation/parts.hpp"
 
 namespace grit::python {
@@ -32,7 +33,7 @@ class Driver::Running {
   template <class Work>
   auto free(const Work& work) {
     const auto freed = [&] {
-      const py::gil_scoped_release released;
+      const Unlocked unlocked;
       return work();
     };
     try {
@@ -115,15 +116,16 @@ void Driver::refuse_done(const Goal& goal) const {
 bool Driver::stops() {
   if (!runs_) return false;
   if (raised_) {
-    const py::gil_scoped_acquire acquired;
+    const Locked locked;
     throw_raised();
   }
   const World& world = simulation_.world();
   // As callbacks by time, at the nearest step.
   if (world.step() >= last_step_ || world.time() >= last_time_ - 0.5 * world.dt()) return true;
-  if (const auto now = Clock::now(); now - asked_ >= signals_every) {
+  if (const auto now = Clock::now(); now - asked_ >= signals_every || is_ending()) {
     asked_ = now;
-    const py::gil_scoped_acquire acquired;
+    const Locked locked;
+    leave_at_the_end();
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   }
   return false;
@@ -144,15 +146,15 @@ void Driver::throw_raised() {
 
 void Driver::observe(std::size_t number) {
   if (!runs_) return;
-  const py::gil_scoped_acquire acquired;
+  const Locked locked;
   has_forces_ = true;
-  owner().attr("_observed")(number);
+  call(owner().attr("_observed"), py::make_tuple(number));
   has_forces_ = false;
   arrays_.let_go();
 }
 
 void Driver::act(const std::string& engine, std::span<Row> force, std::span<Row> moment) {
-  const py::gil_scoped_acquire acquired;
+  const Locked locked;
   const auto add = [](const py::handle& values, std::span<Row> rows) {
     if (values.is_none()) return;
     const auto given = py::cast<py::array_t<double, py::array::c_style>>(values);
@@ -166,7 +168,7 @@ void Driver::act(const std::string& engine, std::span<Row> force, std::span<Row>
   for (bool again = false;; again = true) {
     try {
       acts_ = true;
-      const auto added = simulation.attr("_acted")(engine, force.size()).cast<py::tuple>();
+      const auto added = call(simulation.attr("_acted"), py::make_tuple(engine, force.size())).cast<py::tuple>();
       acts_ = false;
       arrays_.let_go();
       add(added[0], force), add(added[1], moment);
@@ -183,9 +185,9 @@ void Driver::act(const std::string& engine, std::span<Row> force, std::span<Row>
 
 void Driver::report(const Progress& now) {
   if (!shows_progress_ || Clock::now() - began_ < progress_after) return;
-  const py::gil_scoped_acquire acquired;
-  owner().attr("_progressed")(now.stage, now.stage_number, now.stages, now.fraction, now.seconds_left, now.time,
-                              now.particle_steps_per_second);
+  const Locked locked;
+  call(owner().attr("_progressed"), py::make_tuple(now.stage, now.stage_number, now.stages, now.fraction,
+                                                   now.seconds_left, now.time, now.particle_steps_per_second));
 }
 
 void Driver::run(const Goal& goal, bool shows_progress) {

@@ -8,6 +8,7 @@
 #include "format/message.hpp"
 #include "grit/error.hpp"
 #include "input/document.hpp"
+#include "interpreter.hpp"
 
 namespace grit::python {
 namespace {
@@ -24,7 +25,7 @@ template <class... Arguments>
 void raise(const char* name, const Arguments&... arguments) {
   try {
     const py::object type = family().attr(name);
-    PyErr_SetObject(type.ptr(), type(arguments...).ptr());
+    PyErr_SetObject(type.ptr(), call(type, py::make_tuple(arguments...)).ptr());
   } catch (py::error_already_set& other) {  // such as a Ctrl-C just now
     other.restore();
   }
@@ -35,7 +36,7 @@ py::list problems_of(const DescriptionError& error) {
   py::list problems;
   for (const Problem& one : error.problems()) {
     const py::object line = one.line > 0 ? py::object(py::int_(one.line)) : py::none();
-    problems.append(problem(one.file, line, one.pointer, one.message));
+    problems.append(call(problem, py::make_tuple(one.file, line, one.pointer, one.message)));
   }
   return problems;
 }

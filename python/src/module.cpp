@@ -16,6 +16,7 @@
 #include "errors.hpp"
 #include "grit/error.hpp"
 #include "input/units.hpp"
+#include "interpreter.hpp"
 #include "output/series.hpp"
 #include "pictures.hpp"
 #include "plugins/build_facts.hpp"
@@ -86,6 +87,7 @@ PYBIND11_MODULE(_grit, module) {
   using namespace grit;
   using namespace grit::python;
   translate_errors(py::module_::import("grit.errors"));
+  wait_at_the_end();
   module.attr("version") = build_facts().version;
   module.attr("instruction_set") = build_facts().arch;
 
@@ -114,7 +116,7 @@ PYBIND11_MODULE(_grit, module) {
   py::class_<Driver> simulation(module, "Simulation");
   simulation
       .def(py::init(&open), py::arg("source"), py::arg("json"), py::arg("threads"), py::arg("sets"),
-           py::arg("plugin_path"), py::arg("state"), py::arg("resumes"), py::call_guard<py::gil_scoped_release>())
+           py::arg("plugin_path"), py::arg("state"), py::arg("resumes"), py::call_guard<Unlocked>())
       .def("run",
            [](Driver& driver, std::optional<std::uint64_t> steps, std::optional<double> until, bool stage,
               bool progress) {

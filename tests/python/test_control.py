@@ -276,6 +276,92 @@ class Threads(unittest.TestCase):
         self.assertEqual(state(sim), state_of_a_whole_run())
 
 
+class TheEndOfTheInterpreter(unittest.TestCase):
+    """While a daemon thread drives a simulation."""
+
+    def ends(self, thread, main="", first="", last="pass", status=3):
+        """Bodies: of the thread, which sets `begun`; of the main thread after that, before grit is imported, and of the last destructor, which
+        comes when Python has begun to stop threads."""
+        script = f"""
+import atexit, os, sys, threading
+{first}
+sys.argv = ["", {str(GRIT)!r}]
+import falling, grit
+
+class Last:
+    def __del__(self):
+        {last}
+        for _ in range(10**6):  # in which other threads may get the lock
+            pass
+
+sim, begun, goes_on, last = grit.Simulation(falling.long_scene()), threading.Event(), threading.Event(), Last()
+Last.goes_on = goes_on
+
+def drive():
+{thread}
+
+other = threading.Thread(target=drive, daemon=True)
+other.start()
+begun.wait()
+{main}
+sys.exit({status})
+"""
+        done = subprocess.run([sys.executable, "-B", "-c", script], env={**os.environ, "PYTHONPATH": str(pathlib.Path(__file__).parent)},
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120)
+        self.assertEqual((done.returncode, done.stdout), (status, ""))
+
+    def test_in_a_run(self):
+        for steps in (1, 10**9):
+            self.ends(f"""
+    sim.every(steps={steps})(begun.set)
+    sim.run()""")
+
+    def test_in_many_runs(self):
+        self.ends("""
+    while True:
+        sim.run(steps=1)
+        begun.set()""")
+
+    def test_in_an_engine(self):
+        self.ends("""
+    sim.engine("none")(begun.set)
+    sim.run()""")
+
+    def test_in_a_callback_that_waits(self):
+        for decorator in ("sim.every(steps=1)", "sim.engine('wind')"):
+            self.ends(f"""
+    @{decorator}
+    def wait():
+        begun.set()
+        goes_on.wait()
+    sim.run()""", last="self.goes_on.set()")
+
+    def test_while_simulations_are_opened(self):
+        self.ends("""
+    while True:
+        grit.Simulation(falling.scene())
+        begun.set()""")
+
+    def test_of_which_others_know(self):
+        self.ends("""
+    sim.every(steps=10**9)(begun.set)
+    sim.run()""", first="atexit.register(lambda: other.join())")
+
+    def test_that_runs_another_simulation(self):
+        self.ends("""
+    sim.every(steps=10**9)(begun.set)
+    sim.run()""", first="atexit.register(lambda: grit.Simulation(falling.scene((5, 5))).run())")
+
+    def test_of_a_child(self):
+        self.ends("""
+    sim.every(steps=10**9)(begun.set)
+    sim.run()""", """
+child = os.fork()
+if not child:
+    sys.exit(4)
+assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 4""")
+
+
 class Errors(InAFolder):
     def refused(self, path):
         done = subprocess.run([GRIT, "run", path, "--out", self.folder / "out", "--quiet"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
