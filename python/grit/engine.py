@@ -25,7 +25,7 @@ class Engine:
             return None
         try:
             given = numpy.asarray(values, dtype=float)
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, OverflowError) as error:
             raise Error(f"engine {self.name!r} returned {type(values).__name__}, which is no array of numbers: {error}") from error
         if given.shape not in ((3,), (bodies, 3)):
             raise Error(f"engine {self.name!r} returned an array of shape {given.shape}; allowed are ({bodies}, 3), a row for each body, and (3,), the same for all")

@@ -26,7 +26,7 @@ class Recording(Mapping):
             raise Error(f"probe {self.name!r} returned {type(values).__name__}; allowed is a dict of numbers, such as {{\"pressure\": 1.0}}")
         try:
             row = {str(key): float(value) for key, value in values.items()}
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, OverflowError) as error:
             raise Error(f"probe {self.name!r} returned a value that is no number: {error}; give one name to each component of a vector") from error
         known = self._rows.keys() - {"time", "step"}
         if self._rows["time"] and row.keys() != known:

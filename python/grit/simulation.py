@@ -4,6 +4,7 @@ import inspect
 import json
 import math
 import numbers
+import sys
 from collections.abc import Mapping
 
 from . import arguments, compiled, progress as progress_display
@@ -80,9 +81,9 @@ class Simulation:
                 raise TypeError("give one of steps and until")
             steps = arguments.whole("steps", steps, 0)
         elif until is not None:
-            if isinstance(until, bool) or not isinstance(until, numbers.Real) or math.isnan(until):
-                raise TypeError(f"until: found {until!r}; allowed is a simulated time in seconds")
-            until = float(until)
+            if isinstance(until, bool) or not isinstance(until, numbers.Real) or until != until:
+                raise TypeError(f"until: found {arguments.shown(until)}; allowed is a simulated time in seconds")
+            until = math.inf if until > sys.float_info.max else float(max(until, -sys.float_info.max))
             if until < self.time - self.dt:
                 raise ValueError(f"until: found {until} s, but the simulation is at {self.time} s")
         self._run(steps, until, False, progress)

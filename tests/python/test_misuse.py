@@ -175,7 +175,9 @@ class Arguments(InAFolder):
                 lambda: sim.run(-1), lambda: sim.set("", {}), lambda: sim.save(""), lambda: sim.save("a\0b"), lambda: sim.every(steps=0), lambda: sim.every(time=-1),
                 lambda: sim.probe("", every_steps=1), lambda: sim.probe("a", every_steps=1, units={"a": "blub"}), lambda: sim.probe("a", every_steps=1, units={"a": 3}),
                 lambda: sim.stress([0, 0, 0], [1, 1, 0]), lambda: sim.show().save(place / "a.pdf"), lambda: grit.Simulation(scene(), threads=0),
-                lambda: grit.Simulation(scene(), threads=10**20), lambda: grit.Simulation("a\0b")],
+                lambda: grit.Simulation(scene(), threads=10**20), lambda: grit.Simulation("a\0b"), lambda: grit.Simulation(scene(), threads=10**5000),
+                lambda: sim.every(time=10**400), lambda: sim.engine("wind", stiffness=10**400), lambda: sim.run(steps=-10**5000),
+                lambda: sim.stress([0, 0, 0], [1, 1, 10**400])],
             grit.FileError: [
                 lambda: sim.resume(place / "nothing.h5"), lambda: sim.save(place / "nowhere/a.h5"), lambda: sim.show().save(place / "nowhere/a.svg"),
                 lambda: grit.Simulation(scene(), plugin_path="/nowhere"), lambda: grit.Simulation(scene(), plugin_path=[place])],
@@ -200,11 +202,31 @@ class Arguments(InAFolder):
             sim.run(1)
 
     def test_descriptions_that_are_no_json(self):
-        endless = scene()
-        endless["stages"] = endless
-        for description, said in ((endless, "contains itself"), (scene(title="\ud800"), "/title: found the text '.ud800', which is not Unicode")):
-            with self.assertRaisesRegex(grit.DescriptionError, said):
-                grit.Simulation(description)
+        endless, ring, deep, nested = scene(), [], [], numpy.empty(1, dtype=object)
+        endless["walls"]["floor"]["motion"] = endless["walls"]
+        ring.append({"a": ring})
+        nested[0] = nested
+        for _ in range(500):
+            deep = [deep]
+        for title, said in ((10**400, "a whole number of about 400 digits; allowed are whole numbers up to 1.8e.308 in amount"), (-10**5000, "a whole number of about 5000 digits"),
+                            ([3, {"a": 10**400}], "a whole number"), (float("nan"), "nan of type float; allowed are dicts, lists, finite"),
+                            (-float("inf"), "-inf of type float"), (numpy.array([1, numpy.inf]), "inf of type float"), (numpy.longdouble("inf"), "inf of type float"),
+                            ({1, 2}, r"{1, 2} of type set; allowed are dicts"), (b"a", "b'a' of type bytes"), (1j, "1j of type complex"),
+                            (set(range(1000)), r"[0-9, {]{78,80}… of type set"), ({3: 4}, "the key 3 of type int; allowed are texts as keys"),
+                            ({None: 4}, "the key None of type NoneType"), ({b"a": 4}, "the key b'a' of type bytes"), ({"\ud800": 4}, "the text '.ud800', which is not"),
+                            ("\ud800", "the text '.ud800', which is not Unicode"), (ring, "a list that contains itself"), (nested, "a list that contains itself|inside each"),
+                            (deep, "lists and dicts inside each other at more than 100 levels; allowed are up to 100")):
+            pointer = "/title" + {"a whole number": "/1/a", "a list that contains itself": "/0/a"}.get(said, "")
+            with self.subTest(said=said):
+                with self.assertRaisesRegex(grit.DescriptionError, f"^description: {pointer}[^:]*: found {said}") as raised:
+                    grit.Simulation(scene(title=title))
+                self.assertTrue(raised.exception.problems[0].pointer.startswith(pointer))
+                with self.assertRaisesRegex(grit.DescriptionError, f"^sets: {pointer}[^:]*: found {said}"):
+                    grit.Simulation(scene(), sets={"/title": title})
+        with self.assertRaisesRegex(grit.DescriptionError, "^description: /walls/floor/motion: found a dict that contains itself; allowed are values that end"):
+            grit.Simulation(endless)
+        same = {"type": "gravity"}
+        grit.Simulation(scene(engines={"gravity": same, "damping": {"type": "local-damping", "coefficient": numpy.longdouble("0.5")}}))
 
     def test_advice_on_plugins(self):
         with self.assertRaisesRegex(grit.DescriptionError, "plugin_path=DIR or GRIT_PLUGIN_PATH=DIR adds DIR/contacts") as raised:
