@@ -6,6 +6,7 @@
 #include "output/checkpoint.hpp"
 #include "output/plugins_used.hpp"
 #include "simulation/parts.hpp"
+#include "storage/atomic_file.hpp"
 #include "storage/state_file.hpp"
 
 namespace grit::python {
@@ -21,7 +22,7 @@ void check_fits(const SavedState& saved, const Description& facts) {
 }
 
 void write_saved(const std::filesystem::path& path, const SavedState& saved) {
-  write_state(path, {*saved.facts, saved.checkpoint});
+  write_state(path, {*saved.facts, saved.checkpoint}, {}, free_temporary_path(path));
 }
 
 SavedState read_saved(const std::filesystem::path& path) try {

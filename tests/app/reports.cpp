@@ -78,6 +78,29 @@ TEST_F(Reports, ReplaceOnlyTheirOwn) {
     EXPECT_FALSE(exists(std::string("results/two/") + old)) << old << ": of the run that was replaced";
 }
 
+TEST_F(Reports, LeaveFilesBesideThem) {
+  ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
+  const std::vector<std::string> others{"results/two/curves.png.log", "results/two/curves.svg.part", "page.html.part"};
+  for (const auto& other : others) folder.write(other, "mine");
+  EXPECT_EQ(grit({"report", "--png", "results/two"}).status, 0);
+  EXPECT_EQ(grit({"report", "results/two", "--out", "page.html"}).status, 0);
+  EXPECT_THAT(text("page.html"), StartsWith("<!doctype html>"));
+  EXPECT_TRUE(exists("results/two/curves.png"));
+  for (const auto& other : others) EXPECT_EQ(text(other), "mine") << other;
+}
+
+TEST_F(Reports, SayWhatTheConverterSaid) {
+  ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
+  const auto fake = folder.write("bin/rsvg-convert", "#!/bin/sh\necho 'no fonts' >&2\nexit 1\n");
+  std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
+  const auto outcome = Program({"env", "PATH=" + (folder / "bin").string() + ":/usr/bin:/bin", GRIT_BINARY, "report",
+                                "--png", "results/two"},
+                               folder.path())
+                           .finish();
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, HasSubstr("results/two/curves.png: cannot be written: no fonts\n"));
+}
+
 TEST_F(Reports, NameWhatIsOmitted) {
   ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
   folder.write("results/two/run.json", "{");

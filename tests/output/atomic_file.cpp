@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -23,10 +25,25 @@ TEST(AtomicFile, LeavesNothingBesideItWhereItCannotBeReplaced) {
   const OwnFolder folder;
   const auto taken = folder / "run.json";
   std::filesystem::create_directory(taken);
-  for (const auto write : {write_atomically, write_new}) {
+  for (const auto write : {write_atomically, write_beside_others, write_new}) {
     EXPECT_THROW(write(taken, "text"), FileError);
     EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("run.json"));
   }
+}
+
+TEST(AtomicFile, LeavesOthersOfTheNameOfATemporaryFile) {
+  const OwnFolder folder;
+  for (const char* name : {"page.html", "page.html.part", "page.html.part2"}) std::ofstream(folder / name) << "old";
+  EXPECT_EQ(free_temporary_path(folder / "page.html"), folder / "page.html.part3");
+  write_beside_others(folder / "page.html", "new");
+  const auto text = [&](const char* name) {
+    std::ifstream file(folder / name);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  EXPECT_EQ(text("page.html"), "new");
+  EXPECT_EQ(text("page.html.part"), "old");
+  EXPECT_EQ(text("page.html.part2"), "old");
+  EXPECT_EQ(names_in(folder.path()).size(), 3u);
 }
 
 TEST(AtomicFile, DoesNotReplaceAPipe) {

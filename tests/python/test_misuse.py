@@ -195,6 +195,13 @@ class Arguments(InAFolder):
         sim.run()
         self.assertEqual(state(sim), state_of_a_whole_run())
 
+    def test_files_beside_a_state_stay(self):
+        (self.folder / "a.h5.part").write_text("mine")
+        for _ in range(2):
+            grit.Simulation(scene()).save(self.folder / "a.h5")
+        self.assertEqual((self.folder / "a.h5.part").read_text(), "mine")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["a.h5", "a.h5.part"])
+
     def test_names_of_values_with_a_unit(self):
         sim = grit.Simulation(scene())
         sim.probe("mine", every_steps=1, units={"heigth": "m"})(lambda: {"height": 1})

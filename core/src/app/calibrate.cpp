@@ -111,10 +111,10 @@ void publish(const CalibrationPlace& place, const Trials& trials, const Calibrat
   Description fitted = {
       {"//", fitted_mark + fmt::format("{}", fmt::join(parameter_texts(calibration, trials, outcome), "; "))}};
   fitted.update(fitted_description(calibration, base, values));
-  write_atomically(place.out / "calibration.json",
-                   to_json(calibration, place.written.json(), trials, &outcome).dump(2) + "\n");
-  write_atomically(place.out / "fitted.json", fitted.dump(2) + "\n");
-  write_atomically(place.out / "calibration.html", calibration_page(calibration, trials, outcome));
+  write_beside_others(place.out / "calibration.json",
+                      to_json(calibration, place.written.json(), trials, &outcome).dump(2) + "\n");
+  write_beside_others(place.out / "fitted.json", fitted.dump(2) + "\n");
+  write_beside_others(place.out / "calibration.html", calibration_page(calibration, trials, outcome));
   for (const auto& texts :
        {parameter_texts(calibration, trials, outcome), target_texts(calibration, trials, outcome)}) {
     for (const std::string& text : texts) std::cout << "  " << text << '\n';
@@ -193,8 +193,8 @@ ExitStatus calibrate_command(const Options& options) {
   std::vector<ParameterDescription> parameters;
   for (const auto& [name, parameter] : calibration.parameters) parameters.push_back(parameter);
   const auto evaluate = [&](std::size_t number, const std::vector<double>& values) {
-    write_atomically(place.out / "calibration.json",
-                     to_json(calibration, place.written.json(), *trials, nullptr).dump(2) + "\n");
+    write_beside_others(place.out / "calibration.json",
+                        to_json(calibration, place.written.json(), *trials, nullptr).dump(2) + "\n");
     auto samples = runs(number, values);
     progress.trial_ended();
     for (const TrialSample& sample : samples)

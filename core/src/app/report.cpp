@@ -6,6 +6,7 @@
 
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
+#include "app/runs_folder.hpp"
 #include "grit/error.hpp"
 #include "output/own_files.hpp"
 #include "report/curve_pictures.hpp"
@@ -17,10 +18,10 @@
 namespace grit {
 namespace {
 
-/// Throws FileError; the converter's output is in a log file.
+/// Throws FileError, with what the converter says.
 void convert(const std::filesystem::path& svg, const std::filesystem::path& png) {
-  const auto log = png.string() + ".log";
-  const BatchJob job{{"rsvg-convert", "--zoom", "2", "--output", png.string(), svg.string()}, log};
+  const ScratchFile log;
+  const BatchJob job{{"rsvg-convert", "--zoom", "2", "--output", png.string(), svg.string()}, log.path()};
   int status = 0;
   try {
     run_batch(std::span(&job, 1), 1, catch_interrupts(),
@@ -28,15 +29,14 @@ void convert(const std::filesystem::path& svg, const std::filesystem::path& png)
   } catch (const FileError& error) {
     throw FileError(std::string(error.what()) + "; install Debian's librsvg2-bin");
   }
-  if (status != 0) throw FileError(png.string() + ": cannot be written; see " + log);
-  std::filesystem::remove(log);
+  if (status != 0) throw FileError(png.string() + ": cannot be written: " + text_of(log.path()));
 }
 
 void write_pictures(const std::filesystem::path& folder, const std::vector<NamedPicture>& pictures) {
   for (const auto& [name, picture] : pictures) {
     const auto svg = folder / (name + ".svg"), png = folder / (name + ".png");
     for (const auto& file : {svg, png}) refuse_foreign_page(file);
-    write_atomically(svg, picture);
+    write_beside_others(svg, picture);
     convert(svg, png);
     std::cout << "picture: " << png.string() << '\n';
   }
@@ -99,7 +99,7 @@ ExitStatus make_page(const std::vector<std::filesystem::path>& folders, std::opt
   if (!out) out = page.first / "report.html";
   for (const std::string& why : page.unread) std::cerr << "grit: " << why << '\n';
   refuse_foreign_page(*out);
-  write_atomically(*out, page.html);
+  write_beside_others(*out, page.html);
   for (const std::string& problem : page.problems) std::cerr << "grit: omitted: " << problem << '\n';
   std::cout << "report: " << out->string() << '\n';
   return page.unread.empty() ? ExitStatus::done : ExitStatus::files;

@@ -180,9 +180,9 @@ StudyResult evaluate(const StudyPlace& place, const std::map<std::filesystem::pa
     omitted.insert(folder);
   }
   StudyResult result = evaluate_study(place.study, place.out, omitted);
-  write_atomically(place.out / "study.json", to_json(result).dump(2) + "\n");
-  write_atomically(place.out / "study.csv", to_csv(result));
-  write_atomically(place.out / "study.html", study_page(result));
+  write_beside_others(place.out / "study.json", to_json(result).dump(2) + "\n");
+  write_beside_others(place.out / "study.csv", to_csv(result));
+  write_beside_others(place.out / "study.html", study_page(result));
   print(result);
   for (const std::string& line : not_evaluated(result)) std::cerr << "grit: not evaluated: " << line << std::endl;
   std::cout << "page: " << (place.out / "study.html").string() << '\n';

@@ -6,8 +6,10 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <string>
 
 #include "grit/error.hpp"
 
@@ -26,8 +28,16 @@ std::filesystem::path temporary_path(const std::filesystem::path& path) {
   return temporary;
 }
 
-void publish(const std::filesystem::path& path) {
-  const auto temporary = temporary_path(path);
+std::filesystem::path free_temporary_path(const std::filesystem::path& path) {
+  auto temporary = temporary_path(path);
+  for (int number = 2; file_stamp(temporary); ++number)
+    temporary = temporary_path(path).string() + std::to_string(number);
+  return temporary;
+}
+
+void publish(const std::filesystem::path& path) { publish(temporary_path(path), path); }
+
+void publish(const std::filesystem::path& temporary, const std::filesystem::path& path) {
   std::error_code error, ignored;
   const auto found = std::filesystem::symlink_status(path, ignored).type();
   const bool is_special = found == std::filesystem::file_type::character ||
@@ -96,13 +106,15 @@ void sync_folder(const std::filesystem::path& folder) {
 
 namespace {
 
-void write_temporary(const std::filesystem::path& path, std::string_view text) {
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary_path(path).c_str(), "wb"), std::fclose);
+/// `mode`: of fopen().
+void write_temporary(const std::filesystem::path& temporary, const std::filesystem::path& path, std::string_view text,
+                     const char* mode) {
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), mode), std::fclose);
   if (!file) fail(path, errno);
   // Removes the incomplete file that a full disk leaves.
   const auto give_up = [&](int error) {
     std::error_code ignored;
-    std::filesystem::remove(temporary_path(path), ignored);
+    std::filesystem::remove(temporary, ignored);
     fail(path, error);
   };
   if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) give_up(errno);
@@ -112,13 +124,32 @@ void write_temporary(const std::filesystem::path& path, std::string_view text) {
 }  // namespace
 
 void write_atomically(const std::filesystem::path& path, std::string_view text) {
-  write_temporary(path, text);
+  write_temporary(temporary_path(path), path, text, "wb");
   publish(path);
 }
 
+void write_beside_others(const std::filesystem::path& path, std::string_view text) {
+  const auto temporary = free_temporary_path(path);
+  write_temporary(temporary, path, text, "wbx");  // which another process may have made now
+  publish(temporary, path);
+}
+
 void write_new(const std::filesystem::path& path, std::string_view text) {
-  write_temporary(path, text);
+  write_temporary(temporary_path(path), path, text, "wb");
   publish_new(path);
+}
+
+ScratchFile::ScratchFile() {
+  std::string name = (std::filesystem::temp_directory_path() / "grit-XXXXXX").string();
+  const int file = ::mkostemp(name.data(), O_CLOEXEC);
+  if (file < 0) fail(name, errno);
+  ::close(file);
+  path_ = name;
+}
+
+ScratchFile::~ScratchFile() {
+  std::error_code ignored;
+  std::filesystem::remove(path_, ignored);
 }
 
 }  // namespace grit

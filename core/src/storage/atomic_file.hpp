@@ -11,8 +11,12 @@ namespace grit {
 /// The temporary file that is renamed to `path`: in the same folder, so that the rename is atomic.
 std::filesystem::path temporary_path(const std::filesystem::path& path);
 
+/// The same where others have files, too: under a name that nothing has yet.
+std::filesystem::path free_temporary_path(const std::filesystem::path& path);
+
 /// Renames the temporary file to `path`, or removes it and throws FileError.
 void publish(const std::filesystem::path& path);
+void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
 
 /// The same, but another file of this name is kept, and an error.
 void publish_new(const std::filesystem::path& path);
@@ -41,7 +45,22 @@ void sync_folder(const std::filesystem::path& folder);
 
 /// Writes a temporary file and renames it. Throws FileError with the system's reason; the old file then stays.
 void write_atomically(const std::filesystem::path& path, std::string_view text);
-/// The same, but another file of this name is kept, and an error.
+/// The same where others have files, too: no other file is lost, also none of the name of the temporary one.
+void write_beside_others(const std::filesystem::path& path, std::string_view text);
+/// As write_atomically(), but another file of this name is kept, and an error.
 void write_new(const std::filesystem::path& path, std::string_view text);
+
+/// The path of an empty file of its own in the folder for temporary files; removed in the end.
+class ScratchFile {
+ public:
+  /// Throws FileError.
+  ScratchFile();
+  ScratchFile(const ScratchFile&) = delete;
+  ~ScratchFile();
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
 
 }  // namespace grit

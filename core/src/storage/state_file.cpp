@@ -19,8 +19,9 @@ constexpr std::uint64_t format = 5;
 
 }  // namespace
 
-void write_state(const std::filesystem::path& path, const StateFile& state, const std::filesystem::path& previous) {
-  const auto part = temporary_path(path);
+void write_state(const std::filesystem::path& path, const StateFile& state, const std::filesystem::path& previous,
+                 const std::filesystem::path& temporary) {
+  const auto part = temporary.empty() ? temporary_path(path) : temporary;
   try {
     hdf5::File file(part, hdf5::Mode::write_whole);
     file.set_attribute("format", format);
@@ -41,7 +42,7 @@ void write_state(const std::filesystem::path& path, const StateFile& state, cons
   std::error_code error;
   if (!previous.empty() && std::filesystem::exists(path, error)) std::filesystem::rename(path, previous, error);
   if (error) throw FileError(path.string() + ": cannot rename it to " + previous.string() + ": " + error.message());
-  publish(path);
+  publish(part, path);
   sync_folder(path.parent_path());
 }
 

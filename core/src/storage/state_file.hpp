@@ -15,9 +15,11 @@ struct StateFile {
 };
 
 /// Writes a temporary file and renames it once it is on disk, so that a complete file always exists. `previous`: the
-/// name under which the file that is replaced is kept; empty: none. Attributes: format, stage, time [s] and step.
+/// name under which the file that is replaced is kept; empty: none. `temporary`: of the temporary file; empty: see
+/// temporary_path(). Attributes: format, stage, time [s] and step.
 /// Datasets: "facts" and "state". The file is sealed. Throws FileError.
-void write_state(const std::filesystem::path& path, const StateFile& file, const std::filesystem::path& previous = {});
+void write_state(const std::filesystem::path& path, const StateFile& file, const std::filesystem::path& previous = {},
+                 const std::filesystem::path& temporary = {});
 
 /// Throws FileError for an incomplete or damaged file, or one of another format. The checksum of all bytes comes first,
 /// as HDF5 may crash when it reads damaged ones.
