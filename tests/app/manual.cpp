@@ -81,6 +81,22 @@ TEST(Manual, TellsWhereTheDocumentationIs) {
                 HasSubstr("\n.PP\nThe documentation is in share/doc/grit of"));
 }
 
+TEST(Manual, ReplacesOnlyItsOwnPages) {
+  const OwnFolder folder;
+  folder.write("pages/grit-run.1", ".TH MINE 1\n");
+  const auto refused = grit_in(folder.path(), {"manual", "--out", "pages"});
+  EXPECT_EQ(refused.status, 5);
+  EXPECT_THAT(refused.err, HasSubstr("pages/grit-run.1: grit did not write this file: it would be lost; move it away"));
+  EXPECT_EQ(text_of(folder / "pages/grit-run.1"), ".TH MINE 1\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "pages/grit.1")) << "nothing is written";
+  std::filesystem::remove(folder / "pages/grit-run.1");
+  for (int twice = 0; twice < 2; ++twice) {
+    const auto outcome = grit_in(folder.path(), {"manual", "--out", "pages"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  }
+  EXPECT_EQ(text_of(folder / "pages/grit-run.1"), grit_in(folder.path(), {"manual", "run"}).out);
+}
+
 TEST(Manual, DoesNotDependOnTheMachine) {
   const OwnFolder folder;
   const auto on_one_core = [&](const std::string& command) {

@@ -10,7 +10,9 @@
 
 #include "app/options.hpp"
 #include "grit/error.hpp"
+#include "output/own_files.hpp"
 #include "plugins/build_facts.hpp"
+#include "storage/atomic_file.hpp"
 
 namespace grit {
 namespace {
@@ -161,6 +163,15 @@ void print_page(const std::string& name, std::ostream& out) {
   name.empty() ? print_page_of_grit(out) : print_page_of(command(name), out);
 }
 
+/// Whether a file is one of these pages, by its title.
+bool is_own_page_of_manual(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(".TH "))
+      return line.starts_with(".TH GRIT") && line.find(" \"grit ") != line.npos && line.ends_with("\"User Commands\"");
+  return false;
+}
+
 }  // namespace
 
 void manual_options(Options& options) {
@@ -178,11 +189,12 @@ ExitStatus manual_command(const Options& options) {
   std::filesystem::create_directories(folder);
   std::vector<std::string> names{""};
   for (const Command& c : commands()) names.emplace_back(c.name);
+  const auto file_of = [&](const std::string& name) { return folder / (page_name(name) + ".1"); };
+  for (const std::string& name : names) refuse_foreign_file(file_of(name), is_own_page_of_manual);
   for (const std::string& name : names) {
-    const auto file = folder / (page_name(name) + ".1");
-    std::ofstream out(file);
+    std::ostringstream out;
     print_page(name, out);
-    if (!out.flush()) throw FileError(file.string() + ": cannot be written");
+    write_beside_others(file_of(name), out.str());
   }
   return ExitStatus::done;
 }

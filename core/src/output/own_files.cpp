@@ -239,6 +239,10 @@ void remove_run(const fs::path& folder) {
   }
 }
 
+void refuse_foreign_file(const fs::path& path, const std::function<bool(const fs::path&)>& is_own) {
+  if (is_there(path) && !is_empty_file(path) && !(is_file(path) && is_own(path))) refuse(path, not_own);
+}
+
 void refuse_foreign_page(const fs::path& path) {
   if (is_there(path) && !is_own_page(path))
     throw FileError(path.string() +

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -36,6 +37,10 @@ void remove_run(const std::filesystem::path& folder);
 
 /// Whether an entry of frames/ is a file of a run, by its name and how it begins.
 bool is_own_frame(const std::filesystem::path& path);
+
+/// Throws FileError if something of this name exists that is neither an empty file nor one that `is_own`.
+void refuse_foreign_file(const std::filesystem::path& path,
+                         const std::function<bool(const std::filesystem::path&)>& is_own);
 
 /// Throws FileError if a page or picture exists that grit did not write. A PNG file is its own if the SVG file is.
 void refuse_foreign_page(const std::filesystem::path& path);
