@@ -171,7 +171,7 @@ constexpr auto fake_parallel = R"(
 if [[ $1 == --version ]]; then echo 'GNU parallel 1'; exit; fi
 printf '%s\n' "$@" > parallel-words.txt
 while [[ $1 != --joblog ]]; do shift; done
-echo names > "$2"
+printf 'Seq\tHost\tStarttime\n' > "$2"
 failed=0
 while read -r line; do
   /bin/sh -c "$line" < /dev/null || failed=$((failed + 1))
@@ -201,6 +201,28 @@ TEST_F(Submissions, ReportRunsThatDidNotEnd) {
   const auto again = study({"--submit", "parallel"});
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_THAT(again.err, HasSubstr("1 of 2 runs to do"));
+}
+
+TEST_F(Submissions, ReplaceNoFileOfOthers) {
+  install("parallel", fake_parallel);
+  install("sbatch", "echo 42");
+  const std::string not_own = ": grit did not write this file: it would be lost; move it away";
+  for (const auto& [how, name] :
+       {std::pair("parallel", "parallel.sh"), std::pair("parallel", "joblog.txt"),
+        std::pair("parallel", "parallel.txt"), std::pair("slurm", "slurm.sh"), std::pair("slurm", "slurm-job.txt")})
+    for (const std::string text : {"mine\n", "Seq\tHost\tStarttime\n1\t:\t0\tmine\n", "42\nmine\n"}) {
+      folder.write(cluster + name, text);
+      const auto refused = study({"--submit", how});
+      EXPECT_EQ(refused.status, 5) << name;
+      EXPECT_THAT(refused.err, HasSubstr(cluster + name + not_own));
+      EXPECT_EQ(text_of(folder / (cluster + name)), text);
+      std::filesystem::remove(folder / (cluster + name));
+    }
+  for (const char* name : {"sbatch.txt", "squeue.txt", "slurm.sh.part"}) folder.write(cluster + name, "mine");
+  EXPECT_EQ(study({"--submit", "slurm"}).status, 0);
+  EXPECT_EQ(study({"--submit", "parallel"}).status, 0);
+  for (const char* name : {"sbatch.txt", "squeue.txt", "slurm.sh.part"})
+    EXPECT_EQ(text_of(folder / (cluster + name)), "mine") << name;
 }
 
 TEST_F(Submissions, RefuseAnotherParallel) {

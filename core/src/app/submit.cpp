@@ -15,6 +15,7 @@
 #include "format/resources.hpp"
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
+#include "output/own_files.hpp"
 #include "output/shell_word.hpp"
 #include "storage/atomic_file.hpp"
 #include "study/batch.hpp"
@@ -38,25 +39,42 @@ struct ToolOutcome {
   std::string output;
 };
 
-/// Runs a short program; its output stays in `log`.
-ToolOutcome run_tool(std::vector<std::string> words, const fs::path& log) {
+/// Runs a short program.
+ToolOutcome run_tool(std::vector<std::string> words) {
+  const ScratchFile log;
   ToolOutcome outcome;
   const std::atomic<bool> never{false};
-  const BatchJob job{std::move(words), log};
+  const BatchJob job{std::move(words), log.path()};
   run_batch(
       std::span(&job, 1), 1, never,
       {.ended = [&](std::size_t, int status) { return outcome.status = status, true; }, .waiting = [](std::size_t) {}});
-  outcome.output = content_of(log);
+  outcome.output = content_of(log.path());
   return outcome;
 }
 
+constexpr const char* log_heading = "# Output of the runs of 'grit study'\n";
+
+bool is_own_log(const fs::path& path) { return content_of(path).starts_with(log_heading); }
+
+bool is_own_job(const fs::path& path) {
+  const std::string text = content_of(path), job = job_in(text);
+  return !job.empty() && text == job + '\n';
+}
+
+/// Whether GNU parallel wrote it, for runs of a study alone.
+bool is_own_joblog(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  if (!line.starts_with("Seq\tHost\t")) return false;
+  while (std::getline(file, line))
+    if (line.find(" --only ") == line.npos) return false;
+  return true;
+}
+
 void write_script(const fs::path& path, const std::string& text) {
-  if (fs::exists(path) && !(fs::is_regular_file(path) && is_own_script(path)))
-    throw FileError(path.string() +
-                    ": grit did not write this file: it would be lost; move it away, or choose another folder with "
-                    "--out");
   fs::create_directories(path.parent_path());
-  write_atomically(path, text);
+  write_beside_others(path, text);
   fs::permissions(path, fs::perms::owner_exec, fs::perm_options::add);
 }
 
@@ -76,8 +94,8 @@ std::optional<unsigned> at_once(const Options& options) {
 }
 
 /// Throws FileError unless `parallel` is GNU parallel: moreutils has another program of this name.
-void expect_gnu_parallel(const fs::path& program, const fs::path& log) {
-  if (run_tool({program.string(), "--version"}, log).output.starts_with("GNU parallel")) return;
+void expect_gnu_parallel(const fs::path& program) {
+  if (run_tool({program.string(), "--version"}).output.starts_with("GNU parallel")) return;
   throw FileError(
       "--submit parallel: " + program.string() +
       " is not GNU parallel, but another program of this name; install GNU parallel (package \"parallel\"), "
@@ -133,8 +151,7 @@ void check_submit_options(const Options& options) {
 void refuse_queued_job(const fs::path& out) {
   const std::string job = job_in(content_of(job_file(out)));
   if (job.empty() || program_in_path("squeue").empty()) return;
-  const fs::path log = cluster_folder(out) / "squeue.txt";
-  const ToolOutcome queue = run_tool({"squeue", "--noheader", "--jobs=" + job, "--format=%i %T"}, log);
+  const ToolOutcome queue = run_tool({"squeue", "--noheader", "--jobs=" + job, "--format=%i %T"});
   if (queue.status != 0) {
     // Slurm forgets a job some minutes after its end.
     if (queue.output.find("Invalid job id") == std::string::npos)
@@ -159,6 +176,8 @@ void submit_to_slurm(const StudyPlace& place, const std::vector<StudyRun>& runs,
   const Submission of = submission_of(place, runs, options);
   const TaskLimits limits{time_limit(estimated.seconds), memory_limit(estimated.bytes)};
   const fs::path script = of.folder / "slurm.sh";
+  refuse_foreign_file(script, is_own_script);
+  refuse_foreign_file(job_file(place.out), is_own_job);
   write_script(script, slurm_script(of, {limits, at_once(options), options.list("sbatch")}));
   std::cout << fmt::format(
                    "time limit: {} a run, three times the estimate of the longest, {}, but 10 min to 24 h; a run "
@@ -171,7 +190,7 @@ void submit_to_slurm(const StudyPlace& place, const std::vector<StudyRun>& runs,
     std::cout << "submit:  sbatch " << shell_word(script.string()) << '\n';
     return;
   }
-  const ToolOutcome sbatch = run_tool({"sbatch", "--parsable", script.string()}, of.folder / "sbatch.txt");
+  const ToolOutcome sbatch = run_tool({"sbatch", "--parsable", script.string()});
   const std::string job = job_in(sbatch.output);
   if (sbatch.status != 0 || job.empty())
     throw FileError(
@@ -180,7 +199,7 @@ void submit_to_slurm(const StudyPlace& place, const std::vector<StudyRun>& runs,
                     of.runs.size() > 1000 ? "; arrays have a largest size, see 'scontrol show config | grep "
                                             "MaxArraySize'"
                                           : ""));
-  write_atomically(job_file(place.out), job + '\n');
+  write_beside_others(job_file(place.out), job + '\n');
   std::cout << fmt::format("job {}: {}\n", job, counted(of.runs.size(), "run", "runs"))
             << fmt::format("watch:   squeue --jobs={}; logs: {}\n", job,
                            shell_word((of.folder / (job + "_*.txt")).string()))
@@ -191,16 +210,20 @@ void run_in_parallel(const StudyPlace& place, const std::vector<StudyRun>& runs,
                      const std::atomic<bool>& interrupted, const std::function<void(std::size_t)>& waiting) {
   const Submission of = submission_of(place, runs, options);
   const std::string hosts = options.has("hosts") ? options.get<std::string>("hosts") : "";
-  const fs::path script = of.folder / "parallel.sh", joblog = of.folder / "joblog.txt";
+  const fs::path script = of.folder / "parallel.sh", joblog = of.folder / "joblog.txt",
+                 log = of.folder / "parallel.txt";
+  refuse_foreign_file(script, is_own_script);
+  refuse_foreign_file(joblog, is_own_joblog);
+  refuse_foreign_file(log, is_own_log);
   write_script(script, parallel_script(of, {at_once(options), hosts}));
   std::cout << "script: " << script.string() << '\n';
   if (options.has("dry-run")) {
     std::cout << "run:     " << shell_word(script.string()) << "\ncollect: " << collect_command(place, options) << '\n';
     return;
   }
-  expect_gnu_parallel(program_in_path("parallel"), of.folder / "parallel.txt");
+  expect_gnu_parallel(program_in_path("parallel"));
   fs::remove(joblog);  // of other runs: those that are done are not in the script
-  const BatchJob job{{script.string()}, of.folder / "parallel.txt"};
+  const BatchJob job{{script.string()}, log, log_heading};
   int outcome = 0;
   run_batch(std::span(&job, 1), 1, interrupted,
             {.ended = [&](std::size_t, int status) { return outcome = status, true; },

@@ -43,6 +43,11 @@ pid_t start(const BatchJob& job) {
   std::filesystem::create_directories(job.log.parent_path());
   const int log = ::open(job.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (log < 0) throw FileError(job.log.string() + ": cannot write it: " + std::strerror(errno));
+  if (::write(log, job.heading.data(), job.heading.size()) != static_cast<ssize_t>(job.heading.size())) {
+    const int error = errno;
+    ::close(log);
+    throw FileError(job.log.string() + ": cannot write it: " + std::strerror(error));
+  }
   // The child reports why it could not become the program; otherwise that closes the pipe.
   int pipe[2] = {-1, -1};
   int fault = ::pipe2(pipe, O_CLOEXEC) == 0 ? 0 : errno;

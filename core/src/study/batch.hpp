@@ -13,6 +13,7 @@ namespace grit {
 struct BatchJob {
   std::vector<std::string> words;  ///< command line; first the program's path, or its name in PATH
   std::filesystem::path log;       ///< receives standard output and standard error
+  std::string heading = {};        ///< first in the log
 };
 
 struct BatchEvents {
@@ -24,7 +25,8 @@ struct BatchEvents {
 };
 
 /// Starts programs in order, at most `at_once` at a time, and waits for all that were started. Once `interrupted` is
-/// set the running ones get SIGTERM and no more are started; also if this process is killed. Throws FileError if one cannot be started.
+/// set the running ones get SIGTERM and no more are started; also if this process is killed. Throws FileError if one
+/// cannot be started.
 void run_batch(std::span<const BatchJob> jobs, std::size_t at_once, const std::atomic<bool>& interrupted,
                const BatchEvents& events);
 
