@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 #include <regex>
@@ -19,6 +20,7 @@
 #include "grit/geometry.hpp"
 #include "grit/probe.hpp"
 #include "grit/scenario.hpp"
+#include "grit/simulation.hpp"
 #include "grit/testing/fake_world.hpp"
 #include "grit/toolkit/limited_fields.hpp"
 #include "plugins/component_archive.hpp"
@@ -444,6 +446,76 @@ INSTANTIATE_TEST_SUITE_P(
         Called{"probe", "probes/throwing.so", "make_probe()"}, Called{"probe", "probes/throwing.so", "channels()"},
         Called{"probe", "probes/throwing.so", "sample()"}),
     [](const auto& info) { return info.param.name(); });
+
+/// The record of a run says so, too, wherever the exception comes from.
+TEST(BoundaryOfTheProgram, RecordsThatARunHasFailed) {
+  for (const std::string function : {"evaluate()", "forces()", "sample()", "find_contacts()"}) {
+    const Throwing throwing(function, "std::exception");
+    ::setenv("THROW_AFTER", function == "sample()" ? "1" : "10", 1);
+    const OwnFolder folder;
+    folder.write("scene.json", scene);
+    const Outcome outcome = grit_in(folder.path(), {"run", "scene.json", "--out", "results", "--quiet", "--no-report",
+                                                    "--threads", "1", "--plugin-path", THROWING});
+    ::unsetenv("THROW_AFTER");
+    EXPECT_EQ(outcome.status, 3) << function;
+    const auto run = nlohmann::json::parse(text_of(folder / "results/run.json"));
+    EXPECT_EQ(run.at("status"), "failed") << function;
+    const std::string message = run.at("message");
+    EXPECT_THAT(message, AllOf(HasSubstr(" threw: lost my way"), HasSubstr("plugin \""))) << function;
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+  }
+}
+
+/// Bodies may have moved, and some probes have sampled while others have not.
+TEST(BoundaryOfASimulation, EndsIt) {
+  for (const std::string function : {"evaluate()", "forces()", "sample()"}) {
+    Simulation simulation(Description::parse(scene), {.plugin_path = {THROWING}});
+    std::string why;
+    {
+      const Throwing throwing(function, "std::exception");
+      try {
+        simulation.run();
+      } catch (const PluginError& error) {
+        why = error.what();
+      }
+    }
+    EXPECT_THAT(why, HasSubstr("threw: lost my way"));
+    const auto said = testing::ThrowsMessage<PluginError>(why);
+    EXPECT_THAT([&] { simulation.run(); }, said) << function;
+    EXPECT_THAT([&] { simulation.step(1); }, said) << function;
+    EXPECT_THAT([&] { simulation.save(); }, said) << function;
+  }
+}
+
+TEST(BoundaryOfTheProgram, RecordsThatALastSampleHasFailed) {
+  const Throwing throwing("sample()", "std::exception");
+  ::setenv("THROW_AFTER", "1", 1);
+  const OwnFolder folder;
+  folder.write("scene.json", scene);
+  const Outcome outcome = grit_in(folder.path(), {"run", "scene.json", "--out", "results", "--quiet", "--no-report",
+                                                  "--plugin-path", THROWING, "--set", "/stages/0/limit=1e-9", "--set",
+                                                  "/stages/0/until={\"type\": \"mean-stress\", \"above\": 1e9}"});
+  ::unsetenv("THROW_AFTER");
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(text_of(folder / "results/run.json")).at("status"), "failed");
+}
+
+TEST(BoundaryOfTheProgram, RecordsARunOfAStudyThatHasFailed) {
+  const Throwing throwing("sample()", "std::exception");
+  ::setenv("THROW_AFTER", "1", 1);
+  const OwnFolder folder;
+  folder.write("scene.json", scene);
+  folder.write("study.json", R"({"scene": "scene.json", "purpose": "sweep",
+    "settings": {"safety": {"pointers": ["/time_step/safety"], "values": [0.8, 0.4]}}, "seeds": {"values": [1]},
+    "metrics": {"bodies": {"type": "last", "of": "counter/bodies"}}})");
+  const Outcome outcome =
+      grit_in(folder.path(), {"study", "study.json", "--out", "study", "--jobs", "1", "--plugin-path", THROWING});
+  ::unsetenv("THROW_AFTER");
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("seed 1 ended with status 3"), HasSubstr("threw: lost my way")));
+  const auto run = nlohmann::json::parse(text_of(folder / "study/runs/safety=0.8/seed-1/run.json"));
+  EXPECT_EQ(run.at("status"), "failed");
+}
 
 TEST(BoundaryOfTheProgram, NamesAFunctionThatThrowsInAThread) {
   const Throwing throwing("near()", "42");

@@ -147,6 +147,18 @@ class Faults(unittest.TestCase):
                 again()
         self.assertEqual(sim.step, 7)
 
+    def test_an_exception_where_forces_are_looked_at(self):
+        for look in (lambda sim: sim.bodies.force, lambda sim: (sim.every(steps=1)(lambda: None), sim.run())):
+            sim = grit.Simulation(scene())
+            sim.run(5)
+            sim.engine("broken")(lambda: 1 / 0)
+            with self.assertRaises(ZeroDivisionError):
+                look(sim)
+            self.assertTrue(sim.failed)
+            with self.assertRaisesRegex(grit.Error, 'engine "broken" raised an exception in the middle of a step'):
+                sim.run()
+            self.assertEqual(sim.step, 5)
+
     def test_an_exception_at_the_first_instant(self):
         for call in (lambda sim: sim.check(), lambda sim: sim.bodies.force, lambda sim: sim.save(), lambda sim: sim.run(1),
                      lambda sim: sim.set("/materials/sand/friction_angle", 0.1)):

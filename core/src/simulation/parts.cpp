@@ -66,6 +66,9 @@ StageRunner::Event Simulation::Parts::next(bool stop) try {
   // A time step that is too large can be set again; a stage that fails otherwise would fail again.
   if (error.guard() != Guard::critical_step || runner.is_midway()) failure = std::current_exception();
   throw;
+} catch (const PluginError&) {
+  failure = std::current_exception();
+  throw;
 } catch (...) {
   if (runner.is_midway()) failure = std::current_exception();
   throw;
@@ -95,8 +98,11 @@ Checkpoint Simulation::Parts::save() {
   return runner.save();
 }
 
-void Simulation::Parts::show_instant() {
+void Simulation::Parts::show_instant() try {
   placed([this] { runner.show_instant(); });
+} catch (...) {
+  if (runner.is_midway()) failure = std::current_exception();
+  throw;
 }
 
 }  // namespace grit

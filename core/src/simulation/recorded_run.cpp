@@ -1,9 +1,40 @@
 #include "simulation/recorded_run.hpp"
 
+#include <exception>
+#include <new>
+
 #include "grit/error.hpp"
 #include "simulation/parts.hpp"
 
 namespace grit {
+namespace {
+
+/// To be called while an exception is handled that ends a run: records it, unless the run can go on from a checkpoint.
+void record_failure(Simulation::Parts& parts) {
+  RunSummary summary;
+  summary.status = "failed";
+  try {
+    throw;
+  } catch (const FileError&) {
+    return;
+  } catch (const std::bad_alloc&) {
+    return;
+  } catch (const DescriptionError& error) {
+    summary.message = error.problems().front().message;
+  } catch (const std::exception& error) {
+    summary.message = error.what();
+  } catch (...) {
+    summary.message = "something that is not a std::exception";
+  }
+  try {
+    parts.runner.fill(summary);
+    parts.recorder.finish(parts.kernel.world(), summary);
+  } catch (const std::exception&) {
+    // The first one is reported.
+  }
+}
+
+}  // namespace
 
 RunSummary run_recorded(Simulation& simulation) {
   Simulation::Parts& parts = simulation.parts();
@@ -18,13 +49,16 @@ RunSummary run_recorded(Simulation& simulation) {
     throw;
   } catch (const NumericsError& error) {
     summary.status = "failed", summary.message = error.what(), summary.guard = error.guard();
-  } catch (const DescriptionError& error) {
-    summary.status = "failed", summary.message = error.problems().front().message;
-    parts.runner.fill(summary);
-    parts.recorder.finish(parts.kernel.world(), summary);
+  } catch (...) {
+    record_failure(parts);
     throw;
   }
-  parts.runner.finish(summary);
+  try {
+    parts.runner.finish(summary);
+  } catch (...) {
+    record_failure(parts);
+    throw;
+  }
   return summary;
 }
 

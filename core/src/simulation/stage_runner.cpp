@@ -129,7 +129,6 @@ void StageRunner::step(Work work) try {
   midway_ = true;
   work();
   midway_ = false;
-  instant_ = {};
 } catch (const NumericsError& error) {
   midway_ = error.guard() != Guard::critical_step;  // the time step is checked before anything moves
   throw;
@@ -140,6 +139,7 @@ StageRunner::Event StageRunner::next(bool stop) {
   decide();
   if (!instant_.may_end && !stop && !instant_.has_forces && !forces_are_needed(stage)) {
     step([this] { kernel_.step_on(); });
+    instant_ = {};
     return Event::stepped;
   }
   // Before forces are found: a checkpoint that is saved now gives the same bits.
@@ -154,6 +154,7 @@ StageRunner::Event StageRunner::next(bool stop) {
   if (stop) return Event::stopped;
   if (too_late(stage)) fail_late(stage);
   step([this] { kernel_.advance(); });
+  instant_ = {};
   return Event::stepped;
 }
 
@@ -174,8 +175,7 @@ void StageRunner::decide() {
 
 void StageRunner::find_forces() {
   if (instant_.has_forces) return;
-  const Stopwatch watch(stepping_);
-  kernel_.find_forces();
+  step([this] { kernel_.find_forces(); });
   instant_.has_forces = true;
 }
 

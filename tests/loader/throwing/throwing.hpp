@@ -1,7 +1,8 @@
 // Plugins that work, unless $THROW_IN names one of their functions: that one throws what $THROW_WHAT names, or ends the
-// process by exit(0).
+// process by exit(0); after $THROW_AFTER calls, if that is set.
 #pragma once
 
+#include <atomic>
 #include <cstdlib>
 #include <new>
 #include <optional>
@@ -17,6 +18,9 @@ namespace throwing {
 inline void here(const char* function) {
   const char* const where = std::getenv("THROW_IN");
   if (where == nullptr || std::string(where) != function) return;
+  static std::atomic<int> calls = 0;
+  const char* const after = std::getenv("THROW_AFTER");
+  if (after != nullptr && calls++ < std::atoi(after)) return;
   const std::string what = std::getenv("THROW_WHAT");
   if (what == "std::exception") throw std::runtime_error("lost my way");
   if (what == "grit::Error") throw grit::Error("lost my way");
