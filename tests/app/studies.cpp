@@ -48,6 +48,33 @@ class Studies : public testing::Test {
   OwnFolder folder;
 };
 
+TEST_F(Studies, RefuseVariantsOfOneFolder) {
+  json two = json::parse(study);
+  two["settings"] = {{"safety",
+                      {{"pointers", {"/time_step/safety"}},
+                       {"values", {0.8, 0.1, 0.05, 0.01}},
+                       {"labels", {"a", "b c", "b/c", "d"}}}}};
+  folder.write("study.json", two.dump(1));
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--dry-run"}, {"--only", "runs/usual/seed-1"}}) {
+    std::vector<std::string> words{"study", "study.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto refused = grit(words);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.err,
+                AllOf(ContainsRegex("study.json:[0-9]+: /settings: found the variants \"safety=b c\" and "
+                                    "\"safety=b/c\", whose runs would both be in results/study/runs/safety=b_c; "
+                                    "allowed is levels whose"),
+                      HasSubstr("1 problem in the description")));
+    EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+  }
+  two["settings"]["safety"]["labels"] = {"a", "b", std::string(260, 'c'), "d"};
+  folder.write("study.json", two.dump(1));
+  const auto refused = grit({"study", "study.json"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("whose folder would have a name of 267 bytes; allowed is up to 255"));
+}
+
 TEST_F(Studies, AreRunEvaluatedAndNotRunAgain) {
   const auto first = grit({"study", "study.json", "--jobs", "2"});
   ASSERT_EQ(first.status, 0) << first.err;

@@ -10,10 +10,10 @@
 #include <cstring>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <ranges>
-#include <set>
 #include <utility>
 
 #include "app/idle_settings.hpp"
@@ -55,18 +55,32 @@ auto of_variant(const std::filesystem::path& file, const Variant& variant, const
   }
 }
 
-/// Calls `work(variant, seed, folder within the study)` for every run. Throws UsageError if two have the same folder.
+/// Throws DescriptionError if the runs of two variants would have the same folder, or one that no disk can have.
+void refuse_folders(const StudyPlace& place, const std::vector<Variant>& all) {
+  constexpr std::size_t longest = 255;  // bytes of a name
+  const auto refuse = [&](const std::string& found, const std::string& allowed) {
+    throw DescriptionError({Document::load(place.file).problem("/settings", fault_text(found, allowed))});
+  };
+  std::map<std::filesystem::path, std::string> names;
+  for (const Variant& variant : all) {
+    const auto folder = folder_of(variant, place.study.seeds.values.front()).parent_path();
+    if (const auto [other, is_new] = names.emplace(folder, variant.name); !is_new)
+      refuse(fmt::format("the variants \"{}\" and \"{}\", whose runs would both be in {}", other->second, variant.name,
+                         (place.out / folder).string()),
+             "levels whose values or labels differ in more than punctuation");
+    if (const std::size_t length = folder.filename().native().size(); length > longest)
+      refuse(fmt::format("the variant \"{}\", whose folder would have a name of {} bytes", variant.name, length),
+             fmt::format("up to {}; give the levels shorter labels", longest));
+  }
+}
+
+/// Calls `work(variant, seed, folder within the study)` for every run. Throws as refuse_folders() does.
 template <class Work>
 void for_each_run(const StudyPlace& place, const Work& work) {
-  std::set<std::filesystem::path> folders;
-  for (const Variant& variant : variants(place.study))
-    for (const double seed : place.study.seeds.values) {
-      const auto within = folder_of(variant, seed);
-      if (!folders.insert(within).second)
-        throw UsageError("two variants would both write to " + (place.out / within).string() +
-                         "; give their levels labels that differ in more than punctuation");
-      work(variant, seed, within);
-    }
+  const auto all = variants(place.study);
+  refuse_folders(place, all);
+  for (const Variant& variant : all)
+    for (const double seed : place.study.seeds.values) work(variant, seed, folder_of(variant, seed));
 }
 
 /// A scene of the study, and its description as in run.json, whose numbers were converted to text.
