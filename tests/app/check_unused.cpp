@@ -1,6 +1,7 @@
 // Settings without effect, which `check` reports.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -64,6 +65,58 @@ TEST(Descriptions, CheckReportsMotionsWithoutEffect) {
   EXPECT_THAT(check("{}", follows, R"(/stages/0/change={"walls": {"lid": {"motion": )" + moves + "}}}"),
               testing::Not(HasSubstr("/motion/")))
       << "it moves later";
+}
+
+TEST(Descriptions, CheckAndRunWarnOfDensitiesWithWhichNoBodyIsMade) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto stages = [](const std::string& first, const std::string& second) {
+    return R"(/stages=[{"name": "part", "until": {"type": "steps", "value": 5}, "limit": "1 s", )" + first +
+           R"(}, {"name": "rest", "until": {"type": "steps", "value": 5}, "limit": "1 s", )" + second + "}]";
+  };
+  const std::string
+      heavy = R"("change": {"materials": {"sand": {"density": 5200}}})",
+      none = R"("change": {})",
+      ramp = R"("ramps": [{"pointer": "/materials/sand/density", "from": 2600, "to": 5200, "duration": 1e-6}])";
+  const auto later = [](const std::string& stage) {
+    return R"(/bodies/later={"type": "sphere", "material": "sand", "stage": ")" + stage +
+           R"(", "source": {"type": "list", "bodies": [{"position": ["10 mm", 0, 0], "radius": "1 mm"}]}})";
+  };
+  const std::string stream =
+      R"(/bodies/later={"type": "sphere", "material": "sand", "stage": "rest", "source": {"type": "stream",
+      "number_rate": 100, "region": {"type": "disc", "centre": [0, 0, "5 cm"], "radius": "1 cm"},
+      "sizes": {"type": "uniform", "smallest": "1 mm", "largest": "2 mm"}}})";
+  const std::string why =
+      ": bodies keep the mass that they were made with, streams the density of the description, and no "
+      "body of \"sand\" is made with this density; set /materials/sand/density, or let";
+  const std::string first = "/stages/0/change/materials/sand/density",
+                    second = "/stages/1/change/materials/sand/density";
+  const auto expect = [&](const std::vector<std::string>& sets, const std::vector<std::string>& idle) {
+    for (const std::string command : {"check", "run"}) {
+      std::vector<std::string> words{command, "two.json"};
+      if (command == "run") words.insert(words.end(), {"--overwrite", "--no-report"});
+      for (const auto& set : sets) words.insert(words.end(), {"--set", set});
+      const auto outcome = grit_in(folder.path(), words);
+      EXPECT_EQ(outcome.status, 0) << outcome.err;
+      const std::string& text = command == "run" ? outcome.err : outcome.out;
+      const std::string before = command == "run" ? "warning: --set: " : "  ";
+      for (const std::string& pointer : {first, second, std::string("/stages/0/ramps/0")})
+        if (std::ranges::find(idle, pointer) == idle.end()) EXPECT_THAT(text, testing::Not(HasSubstr(pointer)));
+        else EXPECT_THAT(text, HasSubstr(before + pointer + (command == "run" ? ": without effect" : "") + why));
+    }
+  };
+  expect({stages(none, heavy)}, {second});
+  expect({stages(heavy, none)}, {first});
+  expect({stages(heavy, none), later("part")}, {});
+  expect({stages(heavy, none), later("rest")}, {});
+  expect({stages(none, heavy), later("rest")}, {});
+  expect({stages(none, heavy), later("part")}, {second});
+  expect({stages(none, heavy), stream}, {second});
+  expect({stages(ramp, none)}, {"/stages/0/ramps/0"});
+  expect({stages(ramp, none), later("part")}, {"/stages/0/ramps/0"});
+  expect({stages(ramp, none), later("rest")}, {});
+  expect({stages(heavy, R"("change": {"materials": {"sand": {"density": 7800}}})"), later("rest")}, {first});
+  expect({stages(none, R"("change": {"materials": {"sand": {"density": 2600}}})")}, {});
 }
 
 TEST(Descriptions, CheckReportsSettingsWithoutEffect) {

@@ -35,9 +35,9 @@ std::optional<std::string> why_idle(const std::vector<UnusedSetting>& idle, cons
 }
 
 void warn_of_idle(const Document& written, const std::string& where, const std::string& why) {
-  const Problem problem = written.problem(where, why);
-  std::cerr << fmt::format("grit: warning: {}:{}: {}: without effect: {}", problem.file, problem.line, where, why)
-            << std::endl;
+  Problem problem = written.problem(where, "without effect: " + why);
+  problem.pointer = where;
+  std::cerr << "grit: warning: " << DescriptionError({problem}).what() << std::endl;
 }
 
 }  // namespace grit

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "app/curve_summary.hpp"
+#include "app/idle_settings.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_jobs.hpp"
@@ -19,6 +20,7 @@
 #include "format/resources.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
+#include "lint/late_densities.hpp"
 #include "output/checkpoint.hpp"
 #include "output/frame_space.hpp"
 #include "output/own_files.hpp"
@@ -201,6 +203,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     if (!quiet) std::cerr << line << std::endl;
   };
 
+  for (const auto& [pointer, why] : late_densities(scene)) warn_of_idle(scene.document, pointer, why);
   Description references = check_references(description.output);
   say(description.title.empty() ? job.file : job.file + ": " + description.title);
   RunFacts facts = facts_of(job, threads, command_line);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "lint/late_densities.hpp"
 #include "lint/repeated_geometry.hpp"
 #include "lint/unused_materials.hpp"
 #include "lint/unused_motions.hpp"
@@ -21,6 +22,7 @@ std::vector<UnusedSetting> without_effect(const Scene& scene, const Components& 
                                           const SceneSource& source) {
   auto idle = unused_settings(scene, components, kernel);
   std::ranges::move(unused_motions(scene), std::back_inserter(idle));
+  std::ranges::move(late_densities(scene), std::back_inserter(idle));
   const Description now = resolved(*scene.description);
   const auto same = [&](const std::vector<std::string>& more) {
     return resolved(*source.with(more).description) == now;
