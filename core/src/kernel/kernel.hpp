@@ -51,6 +51,8 @@ class Kernel {
   std::string waiting_bodies() const { return inflow_.waiting(); }
   /// Advice for each stream of which many bodies wait.
   std::vector<std::string> blocked_streams() const { return inflow_.blocked(); }
+  /// Whether a component has asked for the energy balance, so that it is kept: see World::energies().
+  bool keeps_energy_balance() const { return balance_.is_kept(); }
   double body_steps() const { return stepper_.body_steps(); }
   unsigned threads() const { return passes_.threads(); }
   std::vector<PhaseTime> phases() const { return passes_.phases(); }

@@ -7,6 +7,7 @@
 #include "format/number.hpp"
 #include "grit/error.hpp"
 #include "run/falling.hpp"
+#include "run/unclosed_balance.hpp"
 #include "simulation/expected_stages.hpp"
 #include "storage/parsed_json.hpp"
 #include "threads/stopwatch.hpp"
@@ -386,6 +387,9 @@ void StageRunner::finish(RunSummary& summary) {
   if (summary.status == "done") {
     summary.warnings = kernel_.blocked_streams();
     for (const auto& [probe, why] : left_out_) summary.warnings.push_back(why);
+    if (kernel_.keeps_energy_balance())
+      if (const std::string fault = unclosed_balance(world_.energies(), live_.now().contacts.type()); !fault.empty())
+        summary.warnings.push_back(fault);
   }
   recorder_.finish(world_, summary);
 }
