@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "grit/testing/energy_paths.hpp"
+
 namespace grit::test {
 
 int contact_law_contract() { return 0; }
@@ -510,6 +512,10 @@ TEST_P(ContactLawContract, ForceIsTheSlopeOfTheEnergy) {
     auto [torque, twisted] = slope(twist, 1e-2 * overlap, 1e-4 * overlap);
     EXPECT_NEAR(torque, law_moment(twisted, 0).norm(), 1e-6 * law_moment(twisted, 0).norm() + 1e-9);
   }
+}
+
+TEST_P(ContactLawContract, WorkOnBodiesIsStoredOrReportedAsLost) {
+  for (const std::string& fault : energy_faults(*law_, GetParam().losses)) ADD_FAILURE() << fault;
 }
 
 TEST_P(ContactLawContract, StiffnessIsTheSlopeOfTheForce) {

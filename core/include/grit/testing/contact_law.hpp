@@ -3,7 +3,8 @@
 // with at least one setup for each combination of the law's features. Radii are about 1 m and masses 1 kg; stiffnesses
 // should be 1e5 … 1e7 N/m, so that a step of 1e-5 s is small.
 // A law without single precision is not tested for it. Set LawSetup::attracts for a law with attraction, and clear
-// LawSetup::usual_limits for a law whose limits are not those of friction_angle, rolling_limit and twisting_limit.
+// LawSetup::usual_limits for a law whose limits are not those of friction_angle, rolling_limit and twisting_limit, and
+// LawSetup::losses for a law without losses().
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,6 +34,9 @@ struct LawSetup {
   /// Whether shear force, rolling and twisting moment have the limits tan(friction_angle) F_n, rolling_limit R F_n and
   /// twisting_limit R F_n, with the mean radius R. A law without one of them does not have its parameter.
   bool usual_limits = true;
+  /// Whether the law reports what it dissipates: LawTraits::losses. Of one that does not, no more is tested than that
+  /// it creates no energy.
+  bool losses = true;
 };
 inline std::ostream& operator<<(std::ostream& out, const LawSetup& setup) { return out << setup.name; }
 inline std::string setup_name(const testing::TestParamInfo<LawSetup>& info) { return info.param.name; }

@@ -154,7 +154,7 @@ class Pairs {
                     .row = within ? nullptr : row_.data(),
                     .sum = sum_.data(),
                     .largest_overlap = std::numeric_limits<double>::quiet_NaN(),
-                    .losses = nullptr};
+                    .losses = losses};
     (law_->*evaluate)(batch);
     largest_overlap_ = batch.largest_overlap;
   }
@@ -177,6 +177,7 @@ class Pairs {
   double closing = 0;
   std::vector<float> asleep_until;  ///< by block; empty: none is skipped
   std::vector<ImageShift> shifts;   ///< the first must be zero
+  Losses* losses = nullptr;         ///< added to
 };
 
 inline Vec3 vec(const Row& row) { return xyz(row); }
