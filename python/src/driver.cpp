@@ -276,10 +276,11 @@ std::size_t Driver::every_steps(std::uint64_t steps) {
 std::size_t Driver::at_stage_end() {
   refuse_while_running("at_stage_end()");
   // The end of a stage is repeated if a callback ended the run there.
-  const std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
-  simulation_.at_stage_end([this, number = observers_, last = never](const World& world) mutable {
-    if (std::exchange(last, world.step()) != world.step()) observe(number);
-  });
+  simulation_.at_stage_end(
+      [this, number = observers_, last = std::pair<std::uint64_t, std::string>()](const World& world) mutable {
+        const std::pair now{world.step(), std::string(world.stage())};
+        if (std::exchange(last, now) != now) observe(number);
+      });
   return observers_++;
 }
 

@@ -84,6 +84,18 @@ TEST_P(New, NamesTheGuideAndThePackagesOfItsTest) {
   EXPECT_THAT(text_of(folder / "my-own/CMakeLists.txt"), HasSubstr(packages));
 }
 
+/// As a law that meets no contact cannot be tried. The example of the kind is not installed here.
+TEST(NewPlugin, HasASceneWithContacts) {
+  const OwnFolder folder;
+  ASSERT_EQ(grit_in(folder.path(), {"new", "contact", "my-own"}).status, 0);
+  const auto run =
+      grit_in(folder.path(), {"run", "my-own/scene.json", "--set", "/contacts/type=linear-rolling", "--out", "out"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto facts = nlohmann::json::parse(text_of(folder / "out/run.json"));
+  EXPECT_GT(facts.at("contacts_per_body").get<double>(), 0.5);
+  EXPECT_EQ(facts.at("warnings").size(), 0u) << facts.at("warnings");
+}
+
 TEST_P(New, ReplacesNothing) {
   folder.write("mine.txt", "");
   std::filesystem::create_directories(folder / "my-own");

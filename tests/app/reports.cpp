@@ -66,6 +66,7 @@ TEST_F(Reports, ReplaceOnlyTheirOwn) {
         name == std::string("report.html") ? grit({"report", "results/two"}) : grit({"report", "--png", "results/two"});
     EXPECT_EQ(outcome.status, 5) << name;
     EXPECT_THAT(outcome.err, HasSubstr(std::string("results/two/") + name + ": grit did not write this file"));
+    EXPECT_EQ(outcome.err.find("--out") == std::string::npos, name != std::string("report.html")) << outcome.err;
     EXPECT_EQ(text(std::string("results/two/") + name), "mine");
     std::filesystem::remove(folder / (std::string("results/two/") + name));
   }

@@ -44,6 +44,16 @@ class Callbacks(unittest.TestCase):
         self.assertEqual(by_time, [0, 5, 10, 15, 20, 20, 25, 30])
         self.assertEqual(ends, [("fall", 20), ("rest", 30)])
 
+    def test_the_end_of_a_stage_without_a_step(self):
+        met = {"until": {"type": "kinetic-energy", "below": 1e30}, "limit": "1 s"}
+        described, ends = scene((20, 10)), []
+        described["stages"] += [{"name": "third", **met}, {"name": "fourth", **met}]
+        sim = grit.Simulation(described)
+        sim.at_stage_end(lambda: ends.append((sim.stage, sim.step)))
+        sim.run()
+        self.assertEqual([name for name, step in ends], ["fall", "rest", "third", "fourth"])
+        self.assertEqual([step for name, step in ends], [20, 30, 30, 30])
+
     def test_they_may_be_removed(self):
         sim, calls = grit.Simulation(scene()), []
 

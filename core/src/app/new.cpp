@@ -123,7 +123,9 @@ std::string scene(const Guide& guide, const std::string& name) {
                     {"material", "sand"}}}}},
                 {"engines",
                  {{"gravity", {{"type", "gravity"}}}, {"damping", {{"type", "local-damping"}, {"coefficient", 0.05}}}}},
-                {"stages", {{{"name", "fall"}, {"until", {{"type", "time"}, {"value", "20 ms"}}}, {"limit", "1 s"}}}}};
+                {"probes", {{"energy", {{"type", "energy"}, {"every_time", "2 ms"}}}}},
+                {"output", {{"frames", {{"every_time", "10 ms"}}}}},
+                {"stages", {{{"name", "fall"}, {"until", {{"type", "time"}, {"value", "0.2 s"}}}, {"limit", "1 s"}}}}};
   json& place = scene[json::json_pointer(guide.section)];
   place["type"] = name;
   place.update(json::parse(guide.values));

@@ -33,9 +33,10 @@ void convert(const std::filesystem::path& svg, const std::filesystem::path& png)
 }
 
 void write_pictures(const std::filesystem::path& folder, const std::vector<NamedPicture>& pictures) {
+  for (const auto& [name, picture] : pictures)
+    for (const char* kind : {".svg", ".png"}) refuse_foreign_page(folder / (name + kind), "move it away");
   for (const auto& [name, picture] : pictures) {
     const auto svg = folder / (name + ".svg"), png = folder / (name + ".png");
-    for (const auto& file : {svg, png}) refuse_foreign_page(file);
     write_beside_others(svg, picture);
     convert(svg, png);
     std::cout << "picture: " << png.string() << '\n';

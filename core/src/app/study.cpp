@@ -184,6 +184,7 @@ StudyResult evaluate(const StudyPlace& place, const std::map<std::filesystem::pa
   write_beside_others(place.out / "study.csv", to_csv(result));
   write_beside_others(place.out / "study.html", study_page(result));
   print(result);
+  for (const std::string& line : failed_runs(result)) std::cerr << "grit: failed: " << line << std::endl;
   for (const std::string& line : not_evaluated(result)) std::cerr << "grit: not evaluated: " << line << std::endl;
   std::cout << "page: " << (place.out / "study.html").string() << '\n';
   return result;

@@ -243,10 +243,9 @@ void refuse_foreign_file(const fs::path& path, const std::function<bool(const fs
   if (is_there(path) && !is_empty_file(path) && !(is_file(path) && is_own(path))) refuse(path, not_own);
 }
 
-void refuse_foreign_page(const fs::path& path) {
+void refuse_foreign_page(const fs::path& path, const std::string& remedy) {
   if (is_there(path) && !is_own_page(path))
-    throw FileError(path.string() +
-                    ": grit did not write this file: it would be lost; move it away, or choose another one (--out)");
+    throw FileError(path.string() + ": grit did not write this file: it would be lost; " + remedy);
 }
 
 }  // namespace grit

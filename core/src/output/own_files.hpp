@@ -42,7 +42,9 @@ bool is_own_frame(const std::filesystem::path& path);
 void refuse_foreign_file(const std::filesystem::path& path,
                          const std::function<bool(const std::filesystem::path&)>& is_own);
 
-/// Throws FileError if a page or picture exists that grit did not write. A PNG file is its own if the SVG file is.
-void refuse_foreign_page(const std::filesystem::path& path);
+/// Throws FileError if a page or picture exists that grit did not write, with what can be done. A PNG file is its own
+/// if the SVG file is.
+void refuse_foreign_page(const std::filesystem::path& path,
+                         const std::string& remedy = "move it away, or choose another one (--out)");
 
 }  // namespace grit

@@ -29,10 +29,9 @@ std::string unclosed_balance(const Energies& balance, const std::string& law) {
   const double error = balance.closure_error;
   if (std::abs(error) <= allowed_closure_error * most.energy) return "";
   return fmt::format(
-      "the energy balance does not close: {} J {}, {} of the energy turned over ({} J, {}), more than {}; if the "
-      "contact "
-      "law \"{}\" is your own, see that its losses() report each dissipation once, as its contract tests; else try a "
-      "smaller step (/time_step/safety)",
+      "the energy balance does not close: {} J {}, {} of the energy turned over ({} J, {}); allowed is {}; try a "
+      "smaller step (/time_step/safety); if the error stays, the losses() of the contact law \"{}\" may be wrong: its "
+      "contract tests them",
       number(std::abs(error)), error > 0 ? "are more than there were and were put in" : "have gone nowhere",
       percent(std::abs(error) / most.energy), number(most.energy), most.name, percent(allowed_closure_error), law);
 }

@@ -377,7 +377,8 @@ std::string StageRunner::reached() const {
   if (const double fraction = kernel_.state().discharged_fraction(); fraction > 0)
     text += ", " + number(100 * fraction) + " % of the mass discharged";
   if (const std::string waiting = kernel_.waiting_bodies(); !waiting.empty()) text += ", " + waiting;
-  return text + ", time " + number(world_.time() - start_.time) + " s";
+  // A stage that begins at the planned end of another one may end before it.
+  return text + ", time " + number(std::max(0.0, world_.time() - start_.time)) + " s";
 }
 
 void StageRunner::finish(RunSummary& summary) {

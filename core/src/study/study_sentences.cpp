@@ -85,6 +85,15 @@ std::vector<std::string> not_evaluated(const StudyResult& result) {
   return lines;
 }
 
+std::vector<std::string> failed_runs(const StudyResult& result) {
+  std::vector<std::string> lines;
+  for (const VariantResult& one : result.variants)
+    for (const Sample& sample : one.samples)
+      if (sample.status == "failed")
+        lines.push_back(fmt::format("{}, seed {:.0f}: {}", one.variant.name, sample.seed, sample.message));
+  return lines;
+}
+
 std::string finer_that_is_not(const StudyResult& result, const VariantResult& one) {
   const double tolerance = result.study.tolerance;
   const bool itself = one.confidence(tolerance) == Confidence::exceeded;

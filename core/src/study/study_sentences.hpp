@@ -17,6 +17,9 @@ std::string deviation_title(const StudyDescription& study, const std::string& me
 /// The metrics that could not be evaluated, one line per reason: "peak, end: its reference is 0 …".
 std::vector<std::string> not_evaluated(const StudyResult& result);
 
+/// The runs that failed and why, one line each: "radius=2 mm, seed 1: …".
+std::vector<std::string> failed_runs(const StudyResult& result);
+
 /// Why a variant is rejected although its own error may be within the tolerance, e.g. "damping=0.01, which is finer,
 /// deviates by 6.5 % ± 0.7 % (bottom_fraction)"; empty if it is not.
 std::string finer_that_is_not(const StudyResult& result, const VariantResult& one);

@@ -556,13 +556,15 @@ TEST_P(ContactLawContract, StatedDampingCoversTheDashpots) {
     const Pairs closing = at({0, 0, -speed}), opening = at({0, 0, speed});
     const double normal = (closing.row(0).force.w - opening.row(0).force.w) / (2 * speed);
     const double critical = 2 * std::sqrt(k.normal / inverse_mass);
-    EXPECT_GE(k.damping_ratio * critical, normal - 1e-6 * critical);
+    EXPECT_GE(k.damping_ratio * critical, normal - 1e-6 * critical)
+        << "stiffness().damping_ratio is less than that of the normal dashpot in evaluate()";
     Pairs slipping = at({speed, 0, 0});
     // The surfaces slip faster than the centres move: the branch is extended to the sum of the radii.
     const double reach = pair.radius_a + pair.radius_b, slip = speed * reach / (reach - overlap);
     const double across = law_shear(slipping, 0).norm() / slip - k.shear * dt,
                  critical_shear = 2 * std::sqrt(k.shear / (3.5 * inverse_mass));
-    EXPECT_GE(k.shear_damping_ratio * critical_shear, across - 1e-6 * critical_shear);
+    EXPECT_GE(k.shear_damping_ratio * critical_shear, across - 1e-6 * critical_shear)
+        << "stiffness().shear_damping_ratio is less than that of the shear dashpot in evaluate()";
   }
 }
 
