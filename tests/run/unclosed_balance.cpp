@@ -66,7 +66,7 @@ TEST(UnclosedBalance, IsWarnedOfWhereADashpotReportsItsWorkTwice) {
 
 TEST(UnclosedBalance, IsNotWarnedOfWhereItCloses) { EXPECT_THAT(warnings_of(collision({})), IsEmpty()); }
 
-/// A run for which it could be kept, but nobody asks.
+/// The run could keep an energy balance, but nothing in it uses one.
 TEST(UnclosedBalance, IsNotLookedForWhereNoneIsKept) {
   Notes notes;
   Simulation simulation = recorded(scene_of(collision({.viscosity = 0}, false)), notes, 1, BodyState::energy);
