@@ -49,7 +49,7 @@ WORK = ROOT / 'results' / 'faults'
 PAGE = ROOT / 'docs' / 'evidence' / 'reliability.md'
 
 # Exit statuses of grit (core/src/app/exit_status.hpp).
-DONE, PLUGIN, FILES, INTERRUPTED = 0, 3, 5, 130
+DONE, DESCRIPTION, PLUGIN, FILES, INTERRUPTED = 0, 2, 3, 5, 130
 NOT_LOADED = 127                                         # by the system, which found no memory for its libraries
 NOTHING_WRITTEN = 'nothing was written'                  # the message of a run that is interrupted before it begins
 
@@ -105,7 +105,7 @@ class Process:
             self.process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=output, stderr=messages, cwd=log.parent,
                                             start_new_session=True, env=os.environ | (environment or {}), preexec_fn=before)
         self.started = time.monotonic()
-        self.memory = 0                                  # bytes of address space, the largest that was seen
+        self.sizes = set()                               # of address space [bytes], since it began
 
     def ends_within(self, seconds):
         """Waits so long, and sees how much memory it takes. Whether it ended."""
@@ -113,17 +113,18 @@ class Process:
         while self.process.poll() is None:
             if time.monotonic() >= until:
                 return False
-            self.memory = max(self.memory, self.address_space('VmPeak'))
+            self.sizes |= self.sizes_now()
             time.sleep(POLL)
         return True
 
-    def address_space(self, key):
+    def sizes_now(self):
+        """Of its address space, now and at most; none while the system still loads its libraries, or it has ended."""
         try:
-            status = Path(f'/proc/{self.process.pid}/status').read_text(encoding='ascii')
+            facts = dict(re.findall(r'^(\w+):\s*(\w+)', Path(f'/proc/{self.process.pid}/status').read_text(encoding='ascii'), re.M))
         except OSError:
-            return 0
-        found = re.search(rf'^{key}:\s*(\d+) kB', status, re.M)
-        return 1024 * int(found[1]) if found else 0
+            return set()
+        has_begun = int(facts['SigIgn'], 16) >> (signal.SIGXFSZ - 1) & 1   # the first that the program does
+        return {1024 * int(facts[key]) for key in ('VmSize', 'VmPeak') if has_begun and key in facts}
 
     def send(self, *signals):
         for one in signals:
@@ -138,7 +139,7 @@ class Process:
 
 def is_helpful(text, folder):
     """Whether a message names the results or a file, a place in the description, or a command or size that helps."""
-    names = r"""(^|[\s"'(])/[a-z_]+|\S\.(h5|json|journal|xdmf|pvd|txt|so|html)\b|'grit [a-z]+|use fewer bodies"""
+    names = r"""(^|[\s"'(])/[a-z_]+|\S\.(h5|json|journal|xdmf|pvd|txt|so|html)\b|'grit [a-z]+|'ulimit|use fewer (bodies|threads)"""
     return str(folder) in text or re.search(names, text) is not None
 
 
@@ -238,7 +239,7 @@ class Prepared:
     name: str
     file: Path
     seconds: float
-    memory: int
+    sizes: list                                          # of address space [bytes] at some moments, sorted
     calls: dict
 
 
@@ -447,23 +448,15 @@ def refused(call, error):
 
 
 def out_of_memory(case):
-    """Less address space than the undisturbed run took, from the start; or no more than it has at some moment."""
-    if case.random.random() < 0.5:
-        most = int(case.random.uniform(0.4, 1) * case.scene.memory)
-        run = case.start(before=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)))
-    else:
-        run = case.start()
-        if run.ends_within(case.moment()):
-            raise TooLate
-        most = run.address_space('VmSize') + case.random.choice((0, 1 << 16, 1 << 20))
-        try:
-            resource.prlimit(run.process.pid, resource.RLIMIT_AS, (most, most))
-        except ProcessLookupError:
-            raise NotApplied from None
+    """Less address space than the undisturbed run took: about what that had at some moment, or anything between."""
+    sizes = case.scene.sizes
+    most = case.random.choice((case.random.choice(sizes) + case.random.choice((0, 1 << 16, 1 << 20)),
+                               case.random.randint(sizes[0], sizes[-1])))
+    run = case.start(before=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)))
     status = case.status_of(run)
     if status == NOT_LOADED:
         raise NotApplied
-    case.expect(run, (DONE, PLUGIN, FILES))
+    case.expect(run, (DONE, DESCRIPTION, PLUGIN, FILES))
     case.finish()
 
 
@@ -597,14 +590,14 @@ class Campaign:
             REFERENCES[name] = same_results.Reference([folder / str(threads) for threads in THREADS])
             self.scenes.append(Prepared(name, folder / 'scene.json', **json.loads(facts.read_text(encoding='utf-8'))))
             one = self.scenes[-1]
-            print(f'{name}: {one.seconds:.1f} s, {one.memory >> 20} MB of address space, {one.calls}', flush=True)
+            print(f'{name}: {one.seconds:.1f} s, {one.sizes[-1] >> 20} MB of address space, {one.calls}', flush=True)
 
     def run_undisturbed(self, name, scene, folder):
         """What the runs of a scene took, as in Prepared."""
         folder.mkdir(parents=True)
         file = folder / 'scene.json'
         write_scene(self.grit, scene, file, self.given.scale)
-        seconds, memory, calls = [], 0, {}
+        seconds, sizes, calls = [], set(), {}
         for threads in THREADS:
             out, log = folder / str(threads), folder / f'calls-{threads}.txt'
             run = Process([self.grit, 'run', file, '--out', out, '--threads', str(threads), '--quiet', '--no-report'], folder / 'log.txt',
@@ -615,12 +608,12 @@ class Campaign:
             if run.process.wait() != DONE:
                 raise ValueError(f'{name}: the undisturbed run ends with exit status {run.process.returncode}:\n{run.text()}')
             seconds.append(time.monotonic() - run.started)
-            memory = max(memory, run.memory)
+            sizes |= run.sizes
             for call, count in re.findall(r'^([a-z]+) (\d+)$', log.read_text(encoding='ascii'), re.M):
                 calls[call] = max(calls.get(call, 0), int(count))
         if calls.get('write', 0) == 0:
             raise ValueError(f'{self.shim} counts no call of {self.grit}: it does not stand before the functions of the C library')
-        return {'seconds': sum(seconds) / len(seconds), 'memory': memory, 'calls': calls}
+        return {'seconds': sum(seconds) / len(seconds), 'sizes': sorted(sizes), 'calls': calls}
 
     def try_case(self, fault, index):
         """One case. Whether the fault was applied."""

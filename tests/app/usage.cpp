@@ -210,6 +210,24 @@ TEST(Usage, AWorkingFolderThatIsGoneIsNamed) {
                                  Not(HasSubstr("filesystem error"))));
 }
 
+TEST(Usage, AUnitDatabaseThatDoesNotReadIsNamed) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  folder.write("damaged.xml", "<unit-system");
+  const auto error_with = [&](const std::string& database) {
+    const auto outcome =
+        Program({"env", "UDUNITS2_XML_PATH=" + database, GRIT_BINARY, "check", "two.json"}, folder.path()).finish();
+    EXPECT_EQ(outcome.status, 5) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_EQ(error_with("missing.xml"),
+            "grit: missing.xml: the unit database of UDUNITS-2 does not open; install libudunits2-data, or set "
+            "UDUNITS2_XML_PATH to its path\n");
+  EXPECT_EQ(error_with("damaged.xml"),
+            "grit: damaged.xml: the unit database of UDUNITS-2 does not read: it is damaged, or there is no memory "
+            "left\n");
+}
+
 TEST(Usage, MoreThreadsThanThoseOfTheMachineAreReported) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);

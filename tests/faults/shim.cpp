@@ -1,17 +1,20 @@
-// A library for LD_PRELOAD that lets system calls fail, or clocks jump. scripts/faults.py sets:
+// A library for LD_PRELOAD that lets system calls fail, clocks jump, or memory end. scripts/faults.py sets:
 //   FAULTS_BELOW   an absolute path: only calls on files below it, or on itself, are counted and fail
 //   FAULTS_FAIL    CALL:N:ERROR:once or CALL:N:ERROR:on. The N-th call of this kind fails with this errno, 1 for the
 //                  first; with "on", so do later calls of all kinds that a full disk, a read-only or a broken one
 //                  refuses
 //   FAULTS_CLOCK   SEED:CALLS. About every so many calls the time of day jumps by up to a day, forwards or backwards,
 //                  and the monotonic clock by up to an hour, forwards
+//   FAULTS_MEMORY  0: the first exception finds no memory, nor a reserve; all ends there, as in the C++ library
 //   FAULTS_LOG     a file: gets a line when the first call fails, and the number of calls of each kind at the end
 //
 // Kinds of calls: write (also shortening a file, and closing a stream), fsync, rename, open (any), create (opening for
 // writing, making folders), remove.
+#include <cxxabi.h>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <stdio_ext.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
@@ -29,6 +32,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <exception>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -55,6 +59,7 @@ class Faults {
     if (const char* text = std::getenv("FAULTS_FAIL")) read_fail(text);
     if (const char* text = std::getenv("FAULTS_CLOCK"); text && std::sscanf(text, "%lu:%lu", &random_, &every_) != 2)
       refuse("FAULTS_CLOCK");
+    if (const char* text = std::getenv("FAULTS_MEMORY")) has_memory_ = std::strcmp(text, "0") != 0;
   }
   /// The number of calls of each kind.
   void report() const {
@@ -107,6 +112,8 @@ class Faults {
   bool fails(Call call) {
     return fails(call, [] {});
   }
+
+  bool has_memory() const { return has_memory_; }
 
   /// The jumps up to now [s] of a clock.
   double jumped(clockid_t clock) {
@@ -161,7 +168,7 @@ class Faults {
   std::size_t call_ = calls;
   int error_ = 0, signal_ = 0;
   std::uint64_t number_ = 0;
-  bool on_ = false;
+  bool on_ = false, has_memory_ = true;
   std::array<std::atomic<std::uint64_t>, calls> counts_{};
   std::atomic<bool> failing_{false};
   std::mutex mutex_;
@@ -335,3 +342,13 @@ int gettimeofday(timeval* __restrict out, void* __restrict zone) noexcept {
 }
 
 }  // extern "C"
+
+void* __cxxabiv1::__cxa_allocate_exception(std::size_t size) noexcept {
+  static auto* const real = next<decltype(__cxa_allocate_exception)>("__cxa_allocate_exception");
+  if (!faults().has_memory()) {
+    constexpr rlimit none{0, 0};
+    ::setrlimit(RLIMIT_AS, &none);
+    std::terminate();
+  }
+  return real(size);
+}

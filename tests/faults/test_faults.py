@@ -142,6 +142,33 @@ class Undisturbed(unittest.TestCase):
         self.assertIn('--scale beside --undisturbed, whose scenes have a length; omit it', text)
 
 
+class Memory(unittest.TestCase):
+    def test_that_ends_before_an_exception_can_be_thrown_is_told(self):
+        done = subprocess.run([GRIT, 'check', '/nowhere.json'], capture_output=True, text=True, check=False,
+                              env=os.environ | {'LD_PRELOAD': str(SHIM), 'FAULTS_MEMORY': '0'})
+        self.assertEqual((done.returncode, done.stderr), (
+            faults.FILES, "grit: out of memory as the program began; 'ulimit -v' prints its limit in kB\n"))
+
+    def limited(self, size, *words):
+        """The exit status and messages of grit with so much address space [kB]."""
+        done = subprocess.run(['prlimit', f'--as={1024 * size}', GRIT, *words], capture_output=True, text=True, check=False)
+        return done.returncode, done.stderr
+
+    def test_of_any_size_that_the_program_begins_with_ends_in_words(self):
+        too_little, enough = 0, 1 << 20
+        while enough - too_little > 16:
+            size = (too_little + enough) // 2
+            too_little, enough = (too_little, size) if self.limited(size, '--version')[0] == 0 else (size, enough)
+        statuses = set()
+        for size in range(enough + 16, enough + 24000, 120):
+            status, text = self.limited(size, 'check', ROOT / 'sims/heap/quick.json')
+            statuses.add(status)
+            self.assertIn(status, (faults.DONE, faults.DESCRIPTION, faults.PLUGIN, faults.FILES), f'{size} kB: {text}')
+            self.assertTrue(status == 0 or faults.is_helpful(text, '/nowhere'), text)
+        self.assertIn(faults.FILES, statuses)
+        self.assertIn(faults.DONE, statuses)
+
+
 class Messages(unittest.TestCase):
     def test_must_name_something(self):
         for text in ('grit: out/series.h5: cannot write: No space left on device', 'grit: /guards/travel: a body moved by 1 m',
@@ -176,6 +203,6 @@ class Pages(unittest.TestCase):
         self.assertLessEqual(set(tables.rows_of(page, 'sanitizers')), {'address', 'thread', 'valgrind'})
 
 
-CASES = {'campaign': (Campaign,), 'restarts': (Restarts,), 'self-test': (WrongPrograms, Undisturbed, Messages, Pages)}
+CASES = {'campaign': (Campaign,), 'restarts': (Restarts,), 'self-test': (WrongPrograms, Undisturbed, Memory, Messages, Pages)}
 suite = unittest.TestSuite(unittest.defaultTestLoader.loadTestsFromTestCase(case) for case in CASES[WHAT])
 sys.exit(0 if unittest.TextTestRunner(verbosity=2).run(suite).wasSuccessful() else 1)

@@ -7,14 +7,19 @@
 #include <array>
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
+#include <exception>
 #include <iostream>
 #include <span>
 #include <string>
+
+#include "format/resources.hpp"
 
 namespace grit {
 namespace {
 
 std::atomic<bool> work_done{false};
+std::terminate_handler by_default = std::abort;
 
 /// The file whose code is at an address.
 std::string file_of(const void* address) {
@@ -46,9 +51,23 @@ void on_early_exit() {
   ::_exit(static_cast<int>(ExitStatus::defect));
 }
 
+/// Where memory ends while the program is loaded, the C++ library has no reserve for std::bad_alloc itself, and ends
+/// the program instead of throwing it.
+[[noreturn]] void on_terminate() {
+  constexpr std::size_t little = 1 << 16;
+  if (!std::current_exception() && !can_take(little)) {
+    constexpr const char* text = "grit: out of memory as the program began; 'ulimit -v' prints its limit in kB\n";
+    static_cast<void>(!::write(STDERR_FILENO, text, std::strlen(text)));
+    ::_exit(static_cast<int>(ExitStatus::files));
+  }
+  by_default();
+  std::abort();
+}
+
 }  // namespace
 
 void refuse_early_exit() {
+  by_default = std::set_terminate(on_terminate);
   std::atexit(on_early_exit);
   std::at_quick_exit(on_early_exit);
 }

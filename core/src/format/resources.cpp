@@ -1,6 +1,7 @@
 #include "format/resources.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -78,6 +79,11 @@ double left_by_address_space() {
 }  // namespace
 
 double available_memory() { return std::min({left_by_machine(), left_by_groups(), left_by_address_space()}); }
+
+bool can_take(std::size_t bytes) {
+  void* const taken = ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return taken != MAP_FAILED && ::munmap(taken, bytes) == 0;
+}
 
 double peak_memory() {
   constexpr double kibibyte = 1024;

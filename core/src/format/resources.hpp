@@ -1,6 +1,7 @@
 // What the machine has left for this process.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -9,6 +10,9 @@ namespace grit {
 /// Memory that this process can still take without swapping [bytes]: what the machine has, and no more than its control
 /// groups and its limit of address space leave. Infinite if nothing is known.
 double available_memory();
+
+/// Whether this process could take so much address space now: libraries in C may crash where it ends.
+bool can_take(std::size_t bytes);
 
 /// Most memory that this process has had so far [bytes].
 double peak_memory();

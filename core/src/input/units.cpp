@@ -2,16 +2,19 @@
 
 #include <udunits2.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <regex>
 #include <sstream>
 #include <utility>
 
+#include "format/resources.hpp"
 #include "grit/error.hpp"
 
 namespace grit {
@@ -64,6 +67,9 @@ struct Scale {
   std::optional<int> exponent;  // if the factor is a power of ten
 };
 
+/// More than enough for the unit database in memory.
+constexpr std::size_t database_bytes = 1 << 24;
+
 /// The UDUNITS-2 library. Its parser is not thread-safe.
 class Udunits {
  public:
@@ -99,12 +105,22 @@ class Udunits {
 
   Udunits() : system_(nullptr, ut_free_system) {
     ut_set_error_message_handler(ut_ignore);
+    if (!can_take(database_bytes)) throw std::bad_alloc();  // the library would crash
+    errno = 0;
     system_.reset(ut_read_xml(nullptr));
-    if (!system_)
-      throw FileError(
-          "the unit database of UDUNITS-2 cannot be read; install udunits2 or set UDUNITS2_XML_PATH to its path");
+    if (!system_) fail(ut_get_status(), errno);
     // The usual symbol, which the database lacks.
     ut_map_symbol_to_unit("deg", UT_ASCII, parse("degree").get());
+  }
+
+  [[noreturn]] static void fail(ut_status status, int error) {
+    if (error == ENOMEM) throw std::bad_alloc();
+    ut_status found{};
+    const char* const path = ut_get_path_xml(nullptr, &found);
+    const bool is_missing = status == UT_OPEN_DEFAULT || status == UT_OPEN_ENV;
+    throw FileError(std::string(path == nullptr ? "udunits2.xml" : path) + ": the unit database of UDUNITS-2 " +
+                    (is_missing ? "does not open; install libudunits2-data, or set UDUNITS2_XML_PATH to its path"
+                                : "does not read: it is damaged, or there is no memory left"));
   }
 
   Unit parse(const std::string& text) const {

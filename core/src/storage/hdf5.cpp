@@ -14,6 +14,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "format/resources.hpp"
 #include "format/utf8.hpp"
 #include "grit/description.hpp"
 #include "grit/error.hpp"
@@ -39,7 +40,7 @@ class Reserve {
 
   /// Throws std::bad_alloc if memory has ended.
   void demand() {
-    if (void* const more = map()) return unmap(more);
+    if (can_take(bytes)) return;
     if (void* const kept = kept_.exchange(nullptr)) unmap(kept);
     throw std::bad_alloc();
   }
