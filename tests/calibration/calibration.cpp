@@ -209,6 +209,25 @@ TEST(Calibration, ReportsParametersThatActAsAProductOnly) {
   }
 }
 
+TEST(Calibration, NamesEachParameterThatIsNotDetermined) {
+  const Formulas product = [](const std::vector<double>& v) {
+    const double by_both = v[0] * std::pow(v[1], 0.25);  // the unknown direction has a fourth of stiffness
+    return std::vector<double>{100 * by_both, 30 * std::sqrt(by_both)};
+  };
+  for (std::uint64_t world = 1; world <= 5; ++world) {
+    const auto calibration =
+        described({{"stiffness", parameter(0.1, 10, 1, "log")}, {"width", parameter(0.1, 10, 1.5, "log")}},
+                  {{"force", {.value = 300, .tolerance = 5}}, {"root", {.value = 52, .tolerance = 1}}});
+    Trials trials = trials_of(calibration, stand_in(product, {10, 1}, 3, world));
+    const auto outcome = calibrate(trials, calibration.optimizer);
+    const std::string said = joined(verdict(calibration, trials, outcome));
+    for (const auto& [k, name] : {std::pair(0, "stiffness"), std::pair(1, "width")})
+      if (!std::isfinite(outcome.uncertainty.standard_error[k]))
+        EXPECT_THAT(said, ContainsRegex(std::string("The targets (do not determine|cannot tell) .*") + name)) << world;
+    EXPECT_FALSE(std::isfinite(outcome.uncertainty.standard_error[1])) << world;
+  }
+}
+
 TEST(Calibration, ReportsAParameterWithoutEffect) {
   const auto calibration = described({{"friction", parameter(5, 40, 27)}, {"idle", parameter(0, 1, 0.5)}},
                                      {{"peak", {.value = 700, .tolerance = 5}}});

@@ -18,8 +18,6 @@ namespace {
 
 /// A place closer than this to an end of its range is at the bound.
 constexpr double at_bound = 0.01;
-/// Components of a direction that are named.
-constexpr double notable = 0.3;
 /// The search begins again from the best trial while the misfit falls to this part.
 constexpr double worthwhile = 0.9;
 
@@ -38,8 +36,8 @@ std::string way_text(const Direction& direction, const std::vector<std::string>&
   const double sign = direction.along[largest] > 0 ? 1 : -1;
   std::vector<std::string> up, down;
   for (std::size_t k = 0; k < names.size(); ++k)
-    if (const double part = sign * direction.along[static_cast<Eigen::Index>(k)]; std::abs(part) > notable)
-      (part > 0 ? up : down).push_back(names[k]);
+    if (const auto i = static_cast<Eigen::Index>(k); direction.has(i))
+      (sign * direction.along[i] > 0 ? up : down).push_back(names[k]);
   std::string text = fmt::format("raising {}", fmt::join(up, " and "));
   if (!down.empty()) text += fmt::format(" and lowering {}", fmt::join(down, " and "));
   return text;
@@ -51,7 +49,7 @@ std::string limits_text(std::size_t samples) { return samples == 1 ? "tolerance"
 std::string of_direction(const Direction& direction, const std::vector<std::string>& names, std::size_t samples) {
   std::vector<std::string> parts;
   for (std::size_t k = 0; k < names.size(); ++k)
-    if (std::abs(direction.along[static_cast<Eigen::Index>(k)]) > notable) parts.push_back(names[k]);
+    if (direction.has(static_cast<Eigen::Index>(k))) parts.push_back(names[k]);
   const std::string why =
       direction.resolved ? fmt::format("has a standard error of {:.0f} % of the ranges", 100 * direction.standard_error)
       : samples == 1     ? "changes the targets by no more than the trials differ from a smooth surface"

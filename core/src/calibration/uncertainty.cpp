@@ -27,6 +27,8 @@ constexpr double most_inflation = 4;
 constexpr double spanning = 0.5;
 /// Components of a unit vector below this are left out of account.
 constexpr double slight = 0.15;
+/// Components of a direction from which a parameter is said to have a part of it.
+constexpr double notable = 0.3;
 /// Trials beyond the number of terms from which a quadratic model is fitted; it is taken unless its slopes scatter by
 /// so much more, as where most trials lie close together.
 constexpr Eigen::Index spare_trials = 2;
@@ -168,6 +170,8 @@ Eigen::VectorXd expected_optimum(const Trials& trials, std::size_t centre, const
 
 }  // namespace
 
+bool Direction::has(Eigen::Index parameter) const { return std::abs(along[parameter]) > (resolved ? notable : slight); }
+
 bool Direction::is_determined() const { return resolved && standard_error < spanning; }
 
 LocalModel local_model(const Trials& trials, std::size_t centre) {
@@ -210,8 +214,7 @@ Uncertainty uncertainty_at(const Trials& trials, std::size_t centre) {
     one.standard_error = one.resolved ? inverse : std::numeric_limits<double>::infinity();
     known.covariance += square(inverse) * one.along * one.along.transpose();
     for (Eigen::Index i = 0; i < count; ++i)
-      if (one.resolved || std::abs(one.along[i]) > slight)
-        known.standard_error[i] += square(one.along[i] * one.standard_error);
+      if (one.resolved || one.has(i)) known.standard_error[i] += square(one.along[i] * one.standard_error);
     known.directions.push_back(std::move(one));
   }
   known.standard_error = known.standard_error.cwiseSqrt();
