@@ -280,6 +280,18 @@ TEST_F(Studies, CheckChannelsBeforeAnyRun) {
   const auto wide = grit({"study", "study.json"});
   EXPECT_EQ(wide.status, 2);
   EXPECT_THAT(wide.err, HasSubstr("/metrics/energy/of: found \"packing/stress\", which has several values per sample"));
+  changed["metrics"]["energy"] = {
+      {"type", "value"}, {"of", "packing/kinetic_energy"}, {"at", "10 mm"}, {"value", "2 deg"}};
+  folder.write("study.json", changed.dump());
+  const auto unit = grit({"study", "study.json"});
+  EXPECT_EQ(unit.status, 2);
+  EXPECT_THAT(
+      unit.err,
+      AllOf(HasSubstr("/metrics/energy/value: found the text \"2 deg\"; allowed is a number in J, or a text with "
+                      "a number and one of J, mJ"),
+            HasSubstr("/metrics/energy/at: found the text \"10 mm\"; allowed is a number in s"),
+            HasSubstr("2 problems")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
 TEST_F(Studies, LocateAProbeThatDoesNotFitTheScene) {

@@ -67,6 +67,13 @@ TEST_F(Metrics, ValueIsReadBetweenSamples) {
   std::get<ValueMetric>(one.what.value()).at = 6;
   EXPECT_THAT(error_of([&] { value(one); }),
               HasSubstr("test/y has abscissae from 0 to 5, but its value is required at 6"));
+  std::get<ValueMetric>(one.what.value()).at = "2500 mm";
+  EXPECT_DOUBLE_EQ(value(one), 6.5);
+  std::get<ValueMetric>(one.what.value()).at = "2 s";
+  EXPECT_THAT(
+      error_of([&] { value(one); }),
+      HasSubstr(
+          "test/y has its value at the text \"2 s\"; allowed is a number in m, or a text with a number and one of"));
 }
 
 TEST_F(Metrics, AbscissaIsTimeUnlessItIsNamed) {

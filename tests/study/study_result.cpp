@@ -216,11 +216,30 @@ TEST_F(Charts, ReferenceMayComeFromElsewhere) {
   EXPECT_NEAR(all.finest().deviations.at("end").error, 0.5, 1e-15);
   EXPECT_NEAR(all.variants[0].deviations.at("end").error, 0.3, 1e-15);
   EXPECT_NEAR(all.variants[0].deviations.at("end").standard_error, 0.5 * std::sqrt(0.01), 1e-15);
+  const StudyResult with_units = result(R"({"end": {"type": "last", "of": "test/y", "value": "0.002 kPa"}})");
+  EXPECT_EQ(with_units.variants[0].deviations.at("end").error, all.variants[0].deviations.at("end").error);
+  EXPECT_EQ(to_json(with_units).at("metrics").at("end").at("reference"), "value");
+  const StudyResult position = result(R"({"end": {"type": "position-of-maximum", "of": "test/y", "against": "test/x",
+    "value": "500 mm", "scale": "50 cm"}})");
+  EXPECT_NEAR(position.variants[0].deviations.at("end").error, 1, 1e-15) << "at 1 m";
   folder.write("lab.csv", "x,y\n0,0\n0.5,2\n");
   const StudyResult curve = result(R"({"c": {"type": "curve", "of": "test/y", "against": "test/x",
     "curve": {"file": "lab.csv", "x": "x", "y": "y"}}})");
   // y = 1.4 x against 4 x up to 0.5, over the largest, 2.
   EXPECT_NEAR(curve.variants[0].deviations.at("c").error, 2.6 / 2 * 0.5 / std::sqrt(3), 2e-3);
+}
+
+TEST_F(Charts, AReferenceInAnotherUnitIsNotCompared) {
+  make_all();
+  const StudyResult all =
+      result(R"({"end": {"type": "last", "of": "test/y", "value": "2 deg"}, "x": {"type": "last", "of": "test/x"}})");
+  EXPECT_THAT(
+      all.unevaluated.at("end"),
+      HasSubstr(
+          "its value is the text \"2 deg\"; allowed is a number in Pa, or a text with a number and one of Pa, kPa"));
+  EXPECT_EQ(all.reference.size(), 1u);
+  EXPECT_THAT(result(R"({"end": {"type": "last", "of": "test/y", "value": "1e999 Pa"}})").unevaluated.at("end"),
+              HasSubstr("its value is the text \"1e999 Pa\""));
 }
 
 TEST_F(Charts, AReferenceOfZeroNeedsAScale) {

@@ -142,6 +142,12 @@ TEST(Studies, AMetricIsOfAChannelAndHasTheReferenceOfItsKind) {
   EXPECT_THAT(metric(R"({"type": "last", "of": "test/y", "value": 0})"),
               HasSubstr("/metrics/f/value: found 0 without a scale"));
   EXPECT_EQ(metric(R"({"type": "last", "of": "test/y", "value": 0, "scale": 2})"), "");
+  EXPECT_EQ(metric(R"({"type": "last", "of": "test/y", "value": "0 kPa", "scale": "2 kPa"})"), "");
+  EXPECT_THAT(metric(R"({"type": "last", "of": "test/y", "value": true})"),
+              HasSubstr("/metrics/f/value: found true; allowed is a number in the unit of the channel"));
+  EXPECT_THAT(metric(R"({"type": "last", "of": "test/y", "scale": -2})"),
+              HasSubstr("/metrics/f/scale: found the number -2; allowed is a value above 0"));
+  EXPECT_THAT(metric(R"({"type": "value", "of": "test/y", "at": [1]})"), HasSubstr("/metrics/f/at: found "));
   EXPECT_THAT(metric(R"({"type": "largest", "of": "test/y"})"), HasSubstr("unknown metric \"largest\""));
 }
 

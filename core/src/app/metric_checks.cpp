@@ -94,6 +94,12 @@ std::map<std::string, std::string> check_channels(const MetricsToCheck& of, cons
                         channel)));
     }
   }
+  for (const auto& [name, metric] : *of.metrics)
+    MetricDescription(metric).find_numbers(
+        units, [&](std::string_view key, std::string_view found, std::string_view allowed) {
+          problems.push_back(of.written->problem(pointer_of(of, name, std::string(key)),
+                                                 fault_text(std::string(found), std::string(allowed))));
+        });
   if (!problems.empty()) throw DescriptionError(std::move(problems));
   return units;
 } catch (const NumericsError&) {

@@ -24,8 +24,8 @@ void check_curves(const MetricsToCheck& of);
 /// Checks probes of the metrics. Throws DescriptionError.
 void check_probes(const MetricsToCheck& of, const SceneDescription& scene);
 
-/// Checks channels, which probes know only once they are bound to a world. Returns the unit of each as PROBE/CHANNEL;
-/// none if the scene fails at once, which other values may not. Throws DescriptionError.
+/// Checks channels, and values in their units, which probes know only once they are bound to a world. Returns the unit
+/// of each as PROBE/CHANNEL; none if the scene fails at once, which other values may not. Throws DescriptionError.
 std::map<std::string, std::string> check_channels(const MetricsToCheck& of, const LiveScene& live,
                                                   const Registry& registry);
 

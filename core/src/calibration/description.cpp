@@ -122,11 +122,6 @@ void TargetDescription::declare(Parameters& p) {
   });
 }
 
-std::string TargetDescription::channel() const {
-  if (!std::holds_alternative<PositionOfMaximumMetric>(metric.what.value())) return metric.of;
-  return metric.against.empty() ? metric.of.substr(0, metric.of.find('/')) + "/time" : metric.against;
-}
-
 void SamplesDescription::declare(Parameters& p) {
   p.add("pointer", pointer).doc("JSON pointer of the seed");
   p.add("count", count)

@@ -47,12 +47,10 @@ struct ParameterDescription {
 };
 
 struct TargetDescription {
-  MetricDescription metric;  ///< with the target curve
-  Description value, tolerance;
+  MetricDescription metric;      ///< with the target curve
+  Description value, tolerance;  ///< in the unit of the metric's channel
 
   void declare(Parameters& p);
-  /// The channel in whose unit the value and the tolerance are.
-  std::string channel() const;
 };
 
 struct SamplesDescription {

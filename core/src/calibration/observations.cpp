@@ -10,8 +10,8 @@
 
 #include "description/placed_error.hpp"
 #include "grit/error.hpp"
-#include "input/units.hpp"
 #include "output/reference_curve.hpp"
+#include "study/number_with_unit.hpp"
 
 namespace grit {
 namespace {
@@ -27,15 +27,9 @@ using Report = std::function<void(const char* key, const std::string& found, con
 /// A number in a unit; an empty one is not known. Reports anything else.
 std::optional<double> number_of(const Description& value, const std::string& unit, const char* key,
                                 const Report& report) {
-  if (value.is_number()) return value.get<double>();
-  const auto quantity =
-      value.is_string() && !unit.empty() ? parse_quantity(value.get<std::string>(), unit) : std::nullopt;
-  if (quantity) return quantity->value;
-  report(key, describe_value(value),
-         unit.empty()  ? std::string("a number in the unit of the channel")
-         : unit == "1" ? std::string("a number, or a text such as \"5 %\": the channel has no unit")
-                       : fmt::format("a number in {}, or a text with a number and one of {}", unit, unit_list(unit)));
-  return std::nullopt;
+  const auto number = number_in(unit, value);
+  if (!number) report(key, describe_value(value), numbers_in(unit));
+  return number;
 }
 
 /// Whether misfits can be computed with a target of this magnitude.
@@ -82,7 +76,7 @@ std::vector<Observation> observations_of(const CalibrationDescription& calibrati
     const Report report = [&](const char* key, const std::string& found, const std::string& allowed) {
       problems.push_back(written.problem(pointer + key, fault_text(found, allowed)));
     };
-    const auto known = units.find(target.channel());
+    const auto known = units.find(target.metric.channel());
     const std::string unit = known == units.end() ? "" : known->second;
     const auto tolerance = number_of(target.tolerance, unit, "tolerance", report);
     if (target.metric.curve) try {

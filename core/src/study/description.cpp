@@ -7,8 +7,10 @@
 
 #include "format/number.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
+#include "input/document.hpp"
 #include "input/file_kind.hpp"
 #include "input/reader.hpp"
+#include "study/number_with_unit.hpp"
 
 namespace grit {
 namespace {
@@ -44,7 +46,8 @@ void MeanMetric::declare(Parameters& p) {
   p.add("fraction", fraction).above(0).at_most(1).doc("final fraction of the abscissa's range over which to average");
 }
 void ValueMetric::declare(Parameters& p) {
-  p.add("at", at).required().doc("abscissa at which to evaluate the curve, in the unit of its channel");
+  p.add("at", at).required().doc(
+      "abscissa at which to evaluate the curve: a number in the unit of its channel, or a text with a unit");
 }
 void MetricDescription::declare_channels(Parameters& p) {
   p.choose(what);
@@ -59,14 +62,43 @@ void MetricDescription::declare_channels(Parameters& p) {
 }
 void MetricDescription::declare(Parameters& p) {
   declare_channels(p);
-  p.add("scale", scale).above(0).doc("divisor of errors; default: largest magnitude of the reference");
-  p.add("value", value).doc("reference value; default: result of the finest settings, none in a sweep");
+  p.add("scale", written_scale)
+      .doc(
+          "divisor of errors, a number in the unit of the channel or a text with a unit; default: largest magnitude of "
+          "the reference");
+  p.add("value", written_value)
+      .doc(
+          "reference value, a number in the unit of the channel or a text with a unit; default: result of the finest "
+          "settings, none in a sweep");
   p.add("curve", curve).doc("reference curve; default: result of the finest settings, none in a sweep");
   p.check([this](const Complain& complain) {
-    if (value && is_curve()) complain("value", "one value for a curve", "a reference curve, or neither");
-    if (value == 0.0 && !scale) complain("value", "0 without a scale", "0 with a scale, by which errors are divided");
+    if (!written_value.is_null() && is_curve())
+      complain("value", "one value for a curve", "a reference curve, or neither");
+    find_numbers({}, complain);
     if (curve && !is_curve()) complain("curve", "a curve for one value", "a reference value, or neither");
   });
+}
+std::string MetricDescription::channel() const {
+  return std::holds_alternative<PositionOfMaximumMetric>(what.value()) ? abscissa() : of;
+}
+std::string MetricDescription::abscissa() const {
+  if (!against.empty() || std::holds_alternative<ProfileMetric>(what.value())) return against;
+  return of.substr(0, of.find('/')) + "/time";
+}
+void MetricDescription::find_numbers(const std::map<std::string, std::string>& units, const Complain& complain) {
+  const auto find = [&](const Description& written, const std::string& in, const char* key) {
+    const auto known = units.find(in);
+    const std::string unit = known == units.end() ? "" : known->second;
+    const auto number = number_in(unit, written);
+    if (!number && !written.is_null() && (!written.is_string() || !unit.empty()))
+      complain(key, describe_value(written), numbers_in(unit));
+    return number;
+  };
+  value = find(written_value, channel(), "value"), scale = find(written_scale, channel(), "scale");
+  if (scale && !(*scale > 0)) complain("scale", describe_value(written_scale), "a value above 0");
+  if (value == 0.0 && written_scale.is_null())
+    complain("value", "0 without a scale", "0 with a scale, by which errors are divided");
+  if (const auto* at = std::get_if<ValueMetric>(&what.value())) find(at->at, abscissa(), "at");
 }
 bool MetricDescription::is_curve() const {
   return std::holds_alternative<CurveMetric>(what.value()) || std::holds_alternative<ProfileMetric>(what.value());

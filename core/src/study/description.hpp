@@ -45,7 +45,7 @@ struct MeanMetric {
 struct ValueMetric {
   static constexpr const char* type_name = "value";
   static constexpr const char* type_doc = "value at an abscissa";
-  double at = 0;
+  Description at;  ///< a number in the unit of the abscissa, or a text with a unit
   void declare(Parameters& p);
 };
 struct CurveMetric {
@@ -64,15 +64,22 @@ struct MetricDescription {
         ProfileMetric>
       what{"metric"};
   std::string of, against;
-  std::optional<double> scale, value;
+  Description written_scale, written_value;  ///< a number in the unit of the channel, or a text with a unit; or null
+  std::optional<double> scale, value;        ///< their numbers, after find_numbers()
   std::optional<ReferenceCurve> curve;
 
   void declare(Parameters& p);
   /// Only the metric and its channels, without references.
   void declare_channels(Parameters& p);
   bool is_curve() const;
+  /// The channel in whose unit its values are.
+  std::string channel() const;
+  /// The channel of the abscissa; empty for the index of a profile.
+  std::string abscissa() const;
+  /// Reports what has no number, with the units of channels that are known.
+  void find_numbers(const std::map<std::string, std::string>& units, const Complain& complain);
   /// Whether the description gives its reference.
-  bool has_own_reference() const { return value || curve; }
+  bool has_own_reference() const { return !written_value.is_null() || curve; }
 };
 
 struct SettingDescription {

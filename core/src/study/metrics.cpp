@@ -8,7 +8,9 @@
 #include <numeric>
 
 #include "grit/error.hpp"
+#include "input/document.hpp"
 #include "output/read_results.hpp"
+#include "study/number_with_unit.hpp"
 
 namespace grit {
 namespace {
@@ -87,10 +89,14 @@ Metric value_of(const MetricDescription& metric, const Metric& all) {
     return one(mean(curve, std::max(curve.x.front(), to - m->fraction * (to - curve.x.front())), to), all.unit);
   }
   if (const auto* v = std::get_if<ValueMetric>(&what)) {
-    const double value = at(curve, v->at);
+    const auto wanted = number_in(all.x_unit, v->at);
+    if (!wanted)
+      throw NumericsError(fmt::format("{} has its value at {}; allowed is {}", metric.of, describe_value(v->at),
+                                      numbers_in(all.x_unit)));
+    const double value = at(curve, *wanted);
     if (std::isnan(value))
       throw NumericsError(fmt::format("{} has abscissae from {:g} to {:g}, but its value is required at {:g}",
-                                      metric.of, curve.x.front(), curve.x.back(), v->at));
+                                      metric.of, curve.x.front(), curve.x.back(), *wanted));
     return one(value, all.unit);
   }
   return one(all.y.back(), all.unit);

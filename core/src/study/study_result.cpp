@@ -150,6 +150,22 @@ void find_lacks(StudyResult& result) {
         if (!result.unevaluated.contains(name)) sample.status = "failed", sample.message = why;
 }
 
+/// The numbers of metrics in the units that the runs have.
+void find_numbers(StudyResult& result) {
+  for (auto& [name, metric] : result.study.metrics) {
+    if (result.unevaluated.contains(name)) continue;
+    const Metric* found = nullptr;
+    for (const VariantResult& outcome : result.variants)
+      for (const Sample& sample : outcome.samples)
+        if (const auto own = sample.metrics.find(name); own != sample.metrics.end()) found = &own->second;
+    if (found != nullptr)
+      metric.find_numbers({{metric.channel(), found->unit}},
+                          [&](std::string_view key, std::string_view value, std::string_view allowed) {
+                            result.unevaluated[name] = fmt::format("its {} is {}; allowed is {}", key, value, allowed);
+                          });
+  }
+}
+
 /// A run whose curve ends well before its reference has failed, as it did not get far enough. If it is of the finest
 /// settings, or if no run overlaps the reference, the metric is not evaluated.
 void find_short_curves(StudyResult& result) {
@@ -476,6 +492,7 @@ StudyResult evaluate_study(StudyDescription study, const std::filesystem::path& 
     }
   }
   find_lacks(result);
+  find_numbers(result);
   find_short_curves(result);
   find_alike(result);
   for (VariantResult& outcome : result.variants) find_costs(outcome), find_values(result, outcome);
@@ -515,10 +532,10 @@ Description to_json(const StudyResult& result) {
     json["metrics"][name] = {
         {"type", metric.what.type()},
         {"of", metric.of},
-        {"reference", metric.value              ? "value"
-                      : metric.curve            ? "curve"
-                      : result.study.is_sweep() ? "none"
-                                                : "finest"},
+        {"reference", metric.curve                 ? "curve"
+                      : metric.has_own_reference() ? "value"
+                      : result.study.is_sweep()    ? "none"
+                                                   : "finest"},
         {"scale", result.scale.contains(name) ? Description(result.scale.at(name)) : Description()},
         {"not_charted", result.unevaluated.contains(name) ? Description(result.unevaluated.at(name)) : Description()}};
   for (const VariantResult& one : result.variants) {
