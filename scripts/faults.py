@@ -461,11 +461,14 @@ def out_of_memory(case):
 
 
 def stopped(case):
-    """A run that is halted at a moment, so that its folder can be changed at once."""
-    run = case.start()
-    if run.ends_within(case.moment()):
-        raise TooLate
-    run.send(signal.SIGSTOP)
+    """A run that is halted at a moment or before a call of the system, so that its folder can be changed at once."""
+    if case.random.random() < 0.5:
+        run, _ = fails_in(case, case.random.choice(('write', 'fsync', 'rename', 'open')), 'STOP', 'once')
+    else:
+        run = case.start()
+        if run.ends_within(case.moment()):
+            raise TooLate
+        run.send(signal.SIGSTOP)
     os.waitid(os.P_PID, run.process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
     return run
 

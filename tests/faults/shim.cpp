@@ -138,7 +138,7 @@ class Faults {
     }
     for (const auto& [name, value] : {std::pair{"ENOSPC", ENOSPC}, {"EROFS", EROFS}, {"EIO", EIO}})
       if (std::strcmp(error, name) == 0) error_ = value;
-    for (const auto& [name, value] : {std::pair{"KILL", SIGKILL}, {"TERM", SIGTERM}})
+    for (const auto& [name, value] : {std::pair{"KILL", SIGKILL}, {"TERM", SIGTERM}, {"STOP", SIGSTOP}})
       if (std::strcmp(error, name) == 0) signal_ = value;
     on_ = std::strcmp(how, "on") == 0;
     if (call_ == calls || error_ + signal_ == 0 || (!on_ && std::strcmp(how, "once") != 0)) refuse("FAULTS_FAIL");

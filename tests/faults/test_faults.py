@@ -8,6 +8,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -142,6 +143,36 @@ class Undisturbed(unittest.TestCase):
         self.assertIn('--scale beside --undisturbed, whose scenes have a length; omit it', text)
 
 
+class RemovedSeries(unittest.TestCase):
+    def run_halted(self, place, name, fail=None):
+        """A short run of which calls on series.h5 are counted, and one may halt it."""
+        out = place / name
+        environment = {'LD_PRELOAD': str(SHIM), 'FAULTS_BELOW': str(out / 'series.h5'), 'FAULTS_LOG': str(place / 'calls.txt')}
+        words = ('--set', '/stages/1/until/value=200', '--set', '/probes={"packing": {"type": "packing", "every_steps": 50}}')
+        run = faults.Process([GRIT, 'run', ROOT / 'bench/scenes/tiny.json', '--out', out, '--threads', '1', '--quiet', '--no-report', *words],
+                             place / 'log.txt', environment | ({'FAULTS_FAIL': f'{fail}:STOP:once'} if fail else {}))
+        os.waitid(os.P_PID, run.process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+        return run, out
+
+    def test_are_missed_whenever_it_is(self):
+        with tempfile.TemporaryDirectory() as place:
+            place, applied = Path(place), 0
+            run, _ = self.run_halted(place, 'undisturbed')
+            self.assertEqual(run.process.wait(), faults.DONE, run.text())
+            counts = re.findall(r'^(open|fsync) (\d+)$', (place / 'calls.txt').read_text(encoding='ascii'), re.M)
+            for call, number in ((call, number) for call, count in counts for number in range(1, int(count) + 1)):
+                run, out = self.run_halted(place, f'{call}-{number}', f'{call}:{number}')
+                applies = faults.status_of(out).get('status') == 'running' and (out / 'series.h5').exists()
+                if applies:
+                    (out / 'series.h5').unlink()
+                run.send(signal.SIGCONT)
+                self.assertEqual(run.process.wait(), faults.FILES if applies else faults.DONE, f'{call} {number}: {run.text()}')
+                if applies:
+                    applied += 1
+                    self.assertIn('series.h5: ', run.text(), f'{call} {number}')
+            self.assertGreater(applied, 5, counts)
+
+
 class Memory(unittest.TestCase):
     def test_that_ends_before_an_exception_can_be_thrown_is_told(self):
         done = subprocess.run([GRIT, 'check', '/nowhere.json'], capture_output=True, text=True, check=False,
@@ -203,6 +234,6 @@ class Pages(unittest.TestCase):
         self.assertLessEqual(set(tables.rows_of(page, 'sanitizers')), {'address', 'thread', 'valgrind'})
 
 
-CASES = {'campaign': (Campaign,), 'restarts': (Restarts,), 'self-test': (WrongPrograms, Undisturbed, Memory, Messages, Pages)}
+CASES = {'campaign': (Campaign,), 'restarts': (Restarts,), 'self-test': (WrongPrograms, Undisturbed, RemovedSeries, Memory, Messages, Pages)}
 suite = unittest.TestSuite(unittest.defaultTestLoader.loadTestsFromTestCase(case) for case in CASES[WHAT])
 sys.exit(0 if unittest.TextTestRunner(verbosity=2).run(suite).wasSuccessful() else 1)

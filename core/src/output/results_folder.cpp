@@ -270,6 +270,7 @@ void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   }
   if (options_.picture && !kept_.empty() && !has_other("picture.svg")) draw_picture(world, summary);
   for (const char* file : {"packing.txt", "picture.svg"}) note(file);
+  series_->expect_own_file();
   run_json_.finish(world, summary);
   if (summary.status == "done") {
     frames_->sync();

@@ -142,6 +142,7 @@ void Series::close() {
   write();
   file_.close();
   seal(path_);
+  expect_own_file();
 }
 
 }  // namespace grit

@@ -44,6 +44,8 @@ class Series {
   void close();
   /// Number of samples of each probe.
   std::vector<std::uint64_t> samples() const;
+  /// Throws FileError if it is not the file at its path any more: samples would be lost without a word.
+  void expect_own_file() const;
 
  private:
   struct Column {
@@ -61,8 +63,6 @@ class Series {
   Table create(const ProbeGroup& probe);
   Table reopen(const ProbeGroup& probe, std::uint64_t samples);
   void write();
-  /// Throws FileError if it is not the file at its path any more: samples would be lost without a word.
-  void expect_own_file() const;
 
   std::filesystem::path path_;
   WritingMark mark_;  ///< outlives the file, which is opened and closed while marked

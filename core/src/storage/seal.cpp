@@ -61,7 +61,8 @@ void seal(const std::filesystem::path& path) {
   if (error) throw FileError(path.string() + ": cannot read: " + error.message());
   std::ifstream written(path, std::ios::binary);
   const std::string text = seal_text(length, checksum_of(written, length, path));
-  std::ofstream file(path, std::ios::binary | std::ios::app);
+  // Not a new file, if this one has been removed.
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out | std::ios::ate);
   file << text;
   file.close();
   if (!file) throw FileError(path.string() + ": cannot write: the disk is full, or the file cannot be changed");
