@@ -2,7 +2,7 @@
 //   FAULTS_BELOW   an absolute path: only calls on files below it, or on itself, are counted and fail
 //   FAULTS_FAIL    CALL:N:ERROR:once or CALL:N:ERROR:on. The N-th call of this kind fails with this errno, 1 for the
 //                  first; with "on", so do later calls of all kinds that a full disk, a read-only or a broken one
-//                  refuses
+//                  refuses. KILL, TERM or STOP: the process gets this signal before the call
 //   FAULTS_CLOCK   SEED:CALLS. About every so many calls the time of day jumps by up to a day, forwards or backwards,
 //                  and the monotonic clock by up to an hour, forwards
 //   FAULTS_MEMORY  0: the first exception finds no memory, nor a reserve; all ends there, as in the C++ library

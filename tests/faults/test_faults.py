@@ -154,7 +154,7 @@ class RemovedSeries(unittest.TestCase):
         os.waitid(os.P_PID, run.process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
         return run, out
 
-    def test_are_missed_whenever_it_is(self):
+    def test_is_noticed_before_each_call(self):
         with tempfile.TemporaryDirectory() as place:
             place, applied = Path(place), 0
             run, _ = self.run_halted(place, 'undisturbed')

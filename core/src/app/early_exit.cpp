@@ -54,8 +54,8 @@ void on_early_exit() {
 /// Where memory ends while the program is loaded, the C++ library has no reserve for std::bad_alloc itself, and ends
 /// the program instead of throwing it.
 [[noreturn]] void on_terminate() {
-  constexpr std::size_t little = 1 << 16;
-  if (!std::current_exception() && !can_take(little)) {
+  constexpr std::size_t at_once = 1 << 21;  // malloc() takes up to 1 MB for the smallest object
+  if (!std::current_exception() && !can_take(at_once)) {
     constexpr const char* text = "grit: out of memory as the program began; 'ulimit -v' prints its limit in kB\n";
     static_cast<void>(!::write(STDERR_FILENO, text, std::strlen(text)));
     ::_exit(static_cast<int>(ExitStatus::files));
