@@ -186,14 +186,18 @@ TEST(Calibration, SaysThatNoBetterPlaceIsFoundForTargetsThatContradict) {
                     HasSubstr("its steps are below the resolution")));
 }
 
+/// Two parameters, and targets that depend on a product of them only.
+CalibrationDescription force_of_two() {
+  return described({{"stiffness", parameter(0.1, 10, 1, "log")}, {"width", parameter(0.1, 10, 1.5, "log")}},
+                   {{"force", {.value = 300, .tolerance = 5}}, {"root", {.value = 52, .tolerance = 1}}});
+}
+
 TEST(Calibration, ReportsParametersThatActAsAProductOnly) {
   const Formulas product = [](const std::vector<double>& v) {
     return std::vector<double>{100 * v[0] * v[1], 30 * std::sqrt(v[0] * v[1])};
   };
   for (std::uint64_t world = 1; world <= 5; ++world) {
-    const auto calibration =
-        described({{"stiffness", parameter(0.1, 10, 1, "log")}, {"width", parameter(0.1, 10, 1.5, "log")}},
-                  {{"force", {.value = 300, .tolerance = 5}}, {"root", {.value = 52, .tolerance = 1}}});
+    const auto calibration = force_of_two();
     Trials trials = trials_of(calibration, stand_in(product, {10, 1}, 3, world));
     const auto outcome = calibrate(trials, calibration.optimizer);
     const auto& values = trials.all()[outcome.optimum].values;
@@ -215,9 +219,7 @@ TEST(Calibration, NamesEachParameterThatIsNotDetermined) {
     return std::vector<double>{100 * by_both, 30 * std::sqrt(by_both)};
   };
   for (std::uint64_t world = 1; world <= 5; ++world) {
-    const auto calibration =
-        described({{"stiffness", parameter(0.1, 10, 1, "log")}, {"width", parameter(0.1, 10, 1.5, "log")}},
-                  {{"force", {.value = 300, .tolerance = 5}}, {"root", {.value = 52, .tolerance = 1}}});
+    const auto calibration = force_of_two();
     Trials trials = trials_of(calibration, stand_in(product, {10, 1}, 3, world));
     const auto outcome = calibrate(trials, calibration.optimizer);
     const std::string said = joined(verdict(calibration, trials, outcome));
