@@ -192,7 +192,7 @@ class Memory(unittest.TestCase):
             too_little, enough = (too_little, size) if self.limited(size, '--version')[0] == 0 else (size, enough)
         statuses = set()
         for size in range(enough + 16, enough + 24000, 120):
-            status, text = self.limited(size, 'check', ROOT / 'sims/heap/quick.json')
+            status, text = self.limited(size, 'check', ROOT / 'sims/heap/quick.json', '--threads', '1')
             statuses.add(status)
             self.assertIn(status, (faults.DONE, faults.DESCRIPTION, faults.PLUGIN, faults.FILES), f'{size} kB: {text}')
             self.assertTrue(status == 0 or faults.is_helpful(text, '/nowhere'), text)
