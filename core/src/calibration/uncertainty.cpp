@@ -27,7 +27,7 @@ constexpr double most_inflation = 4;
 constexpr double spanning = 0.5;
 /// Components of a unit vector below this are left out of account.
 constexpr double slight = 0.15;
-/// Components of a direction from which a parameter is said to have a part of it.
+/// Components of a resolved direction above this are named.
 constexpr double notable = 0.3;
 /// Trials beyond the number of terms from which a quadratic model is fitted; it is taken unless its slopes scatter by
 /// so much more, as where most trials lie close together.

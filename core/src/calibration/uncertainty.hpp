@@ -27,7 +27,8 @@ struct Direction {
   double standard_error = 0;   ///< of the place along it
   bool resolved = true;        ///< whether the change exceeds what scatter would show without one
   bool is_determined() const;  ///< resolved, and known to better than half of the ranges
-  /// Whether a parameter has a notable part of it. One that is not resolved determines no parameter with a slight part.
+  /// Whether a parameter takes part in it. If it is not resolved, a smaller part is enough to leave the parameter
+  /// unknown.
   bool has(Eigen::Index parameter) const;
 };
 

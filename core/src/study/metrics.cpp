@@ -44,22 +44,19 @@ std::string time_of(const std::string& channel) { return channel.substr(0, chann
 /// The abscissa of a metric: another channel, or time, or the index in a profile.
 SampledChannel abscissa_of(const MetricDescription& metric, const SampledChannel& of,
                            const std::filesystem::path& folder, const std::string& where) {
-  const std::string time = time_of(metric.of);
-  if (metric.against.empty() && !std::holds_alternative<ProfileMetric>(metric.what.value()))
-    return read_channel(folder, time);
-  if (metric.against.empty()) {
+  const std::string time = time_of(metric.of), name = metric.abscissa();
+  if (name.empty()) {
     SampledChannel index{.unit = "1", .doc = "index", .samples = 1, .values = std::vector<double>(last_row(of).size())};
     std::iota(index.values.begin(), index.values.end(), 0.0);
     return index;
   }
-  SampledChannel against = read_channel(folder, metric.against);
+  SampledChannel against = read_channel(folder, name);
   if (against.samples != of.samples ||
-      (time_of(metric.against) != time &&
-       read_channel(folder, time_of(metric.against)).values != read_channel(folder, time).values))
-    throw FileError(where + " and " + metric.against +
+      (time_of(name) != time && read_channel(folder, time_of(name)).values != read_channel(folder, time).values))
+    throw FileError(where + " and " + name +
                     " are not sampled at the same times; give both probes the same interval and stages");
   if (against.values.size() != of.values.size())
-    throw FileError(where + " and " + metric.against + " differ in the number of values per sample");
+    throw FileError(where + " and " + name + " differ in the number of values per sample");
   return against;
 }
 
