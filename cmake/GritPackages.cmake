@@ -1,6 +1,9 @@
-# Debian packages, made by `scripts/package.sh --deb` with CPack: grit, grit-dev, python3-grit and grit-doc. A component is a
+# Debian packages, made by `scripts/package.sh --deb` with CPack: grit, grit-mpi, grit-dev, python3-grit and grit-doc. A component is a
 # package; `cmake --install` installs all of them, without what only packages have.
 set(CPACK_COMPONENTS_ALL grit grit-dev python3-grit grit-doc)
+if(TARGET grit_mpi)
+  list(APPEND CPACK_COMPONENTS_ALL grit-mpi)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_GENERATOR DEB)
 set(CPACK_STRIP_FILES ON)
@@ -65,7 +68,13 @@ package(grit science "discrete element method for sand, shear zones and silos"
   "${about}
 This package has the program and its plugins for several instruction sets,
 of which it takes the best that the processor has."
-  SHLIBDEPS ON RECOMMENDS "librsvg2-bin" SUGGESTS "grit-doc, python3-grit")
+  SHLIBDEPS ON RECOMMENDS "librsvg2-bin" SUGGESTS "grit-doc, python3-grit, grit-mpi")
+if(TARGET grit_mpi)
+  package(grit-mpi science "discrete element method - runs in several processes"
+    "${about}
+This package has what grit needs when mpirun or srun starts it."
+    SHLIBDEPS ON DEPENDS "grit (= ${version}), openmpi-bin")
+endif()
 package(grit-dev libdevel "discrete element method - headers for plugins and programs"
   "${about}
 This package has the headers, the CMake package and the contracts that test

@@ -15,6 +15,7 @@ packages=(
   libeigen3-dev
   libhdf5-dev
   libmuparser-dev
+  libopenmpi-dev openmpi-bin         # one run in several processes
   libnlopt-dev libnlopt-cxx-dev      # optimisation of 'grit calibrate'
   libspdlog-dev
   libudunits2-dev

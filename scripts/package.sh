@@ -56,7 +56,7 @@ if [[ -n $deb ]]; then
   (umask 022 && cpack -G DEB --config "$builds/${levels[0]}/CPackConfig.cmake" -B "$stage" -D "CPACK_INSTALL_CMAKE_PROJECTS=$projects") \
     > "$builds/cpack.log" || { cat "$builds/cpack.log" >&2; exit 1; }
   mkdir -p "$target"
-  rm -f "$target"/{grit,grit-dev,python3-grit,grit-doc}_*.deb
+  rm -f "$target"/{grit,grit-mpi,grit-dev,python3-grit,grit-doc}_*.deb
   mv "$stage"/*.deb "$target"
   echo "packages: ${levels[*]} in $target"
   exit

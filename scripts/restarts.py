@@ -2,11 +2,12 @@
 """Stops and continues a short version of every quick description of sims/, and of scenes for plugins that none of them uses: the
 results must have the same bits as those of a run that was never stopped.
 
-  restarts.py [--only PATTERN]... [--steps N] [--grit FILE] [--shim FILE] [--markdown [PAGE]]
+  restarts.py [--only PATTERN]... [--steps N] [--ranks N,M] [--grit FILE] [--shim FILE] [--markdown [PAGE]]
 
 Each stage ends after N steps (fewer if a guard would stop the run), so that a run passes through all that its stages change and
 measure. It stops at the frame next after half of its steps, by a signal that the library of tests/faults sends there, and continues
-from its checkpoint. It takes one thread without the stop, two before and three after it. Compared are all results (same_results.py).
+from its checkpoint. It takes one thread without the stop, two before and three after it, or with --ranks so many processes of MPI.
+Compared are all results (same_results.py).
 
 Prints a table, and the plugins that no scene used, which is a failure unless --only is given. --markdown writes the table into PAGE,
 docs/evidence/reliability.md unless given.
@@ -38,6 +39,9 @@ FEWEST = 50                                              # steps of a stage
 FRAMES_PER_STAGE = 4
 KINDS = {'bodies': 'body', 'contacts': 'contact', 'engines': 'engine', 'geometry': 'geometry', 'probes': 'probe',
          'scenarios': 'scenario'}
+
+# Open MPI refuses to run as root otherwise, as in a container.
+MPI_AS_ROOT = {'OMPI_ALLOW_RUN_AS_ROOT': '1', 'OMPI_ALLOW_RUN_AS_ROOT_CONFIRM': '1'} if os.geteuid() == 0 else {}
 
 HERTZ = {'young_modulus': '50 MPa', 'poisson_ratio': 0.2, 'friction_angle': '25 deg', 'restitution': 0.6, 'density': '2600 kg/m^3'}
 # Plugins that no quick description uses, in scenes of sims/: what is merged into the description, null removes.
@@ -103,6 +107,11 @@ def plugins():
     return {(kind, folder.name) for place, kind in KINDS.items() for folder in (ROOT / 'plugins' / place).glob('*/') if folder.is_dir()}
 
 
+def ranks_of(text):
+    before, after = (int(number) for number in text.split(','))
+    return before, after
+
+
 class Scene:
     def __init__(self, given, name, file, changes, place):
         self.given, self.name, self.file, self.changes = given, name, file, changes
@@ -110,9 +119,11 @@ class Scene:
         self.place.mkdir()
         self.used = set()
 
-    def run(self, out, threads, *more, environment=None):
+    def run(self, threads, *more, ranks=1, environment=None):
         words = [self.given.grit, 'run', *more, '--threads', str(threads), '--quiet', '--no-report']
-        done = subprocess.run(words, capture_output=True, text=True, check=False, env=os.environ | (environment or {}))
+        if ranks > 1:
+            words = ['mpirun', '--oversubscribe', '-n', str(ranks), *words]
+        done = subprocess.run(words, capture_output=True, text=True, check=False, env=os.environ | MPI_AS_ROOT | (environment or {}))
         return done.returncode, done.stderr.strip()
 
     def write(self, steps):
@@ -128,7 +139,7 @@ class Scene:
         steps = self.given.steps
         while True:
             scene = self.write(steps)
-            status, errors = self.run('whole', 1, scene, '--out', self.place / 'whole', '--overwrite')
+            status, errors = self.run(1, scene, '--out', self.place / 'whole', '--overwrite')
             if status == DONE:
                 return scene
             if status != NUMERICS or steps <= FEWEST:
@@ -141,16 +152,17 @@ class Scene:
         whole, part = self.place / 'whole', self.place / 'part'
         facts = json.loads((whole / 'run.json').read_text(encoding='utf-8'))
         self.used = {(plugin['kind'], plugin['name']) for plugin in facts['plugins']}
-        status, errors = self.run('again', 2, scene, '--out', self.place / 'again')
+        before, after = self.given.ranks
+        status, errors = self.run(2 if before == after == 1 else 1, scene, '--out', self.place / 'again')
         if status != DONE:
             raise ValueError(f'a second run ends with exit status {status}: {errors[-300:]}')
         frame = self.frame_after(whole, facts['steps'] / 2)
         environment = {'LD_PRELOAD': str(self.given.shim), 'FAULTS_BELOW': str(part.resolve() / 'frames' / frame),
                        'FAULTS_FAIL': 'rename:1:TERM:once'}
-        status, errors = self.run('part', 2, scene, '--out', part, environment=environment)
+        status, errors = self.run(2 if before == 1 else 1, scene, '--out', part, ranks=before, environment=environment)
         if status != INTERRUPTED:
             raise ValueError(f'the run was not stopped at frames/{frame}: exit status {status}: {errors[-300:]}')
-        status, errors = self.run('part', 3, part, '--resume')
+        status, errors = self.run(3 if after == 1 else 1, part, '--resume', ranks=after)
         if status != DONE:
             raise ValueError(f'--resume ends with exit status {status}: {errors[-300:]}')
         step = json.loads((part / 'run.json').read_text(encoding='utf-8'))['resumed_at_step']
@@ -171,6 +183,7 @@ HEAD = ('description', 'steps', 'restarted at step', 'result', 'date')
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--only', action='append', default=[], metavar='PATTERN', help="of descriptions ('triaxial/*') and plugins ('jkr')")
+    parser.add_argument('--ranks', type=ranks_of, default=(1, 1), metavar='N,M', help='processes of MPI before and after the restart')
     parser.add_argument('--steps', type=int, default=1000, metavar='N', help='of each stage')
     parser.add_argument('--grit', type=Path, default=ROOT / 'build/bin/grit', metavar='FILE')
     parser.add_argument('--shim', type=Path, default=ROOT / 'build/tests/faults/faults_shim.so', metavar='FILE')
@@ -207,7 +220,7 @@ def main():
     print(tables.table(HEAD, rows), end='')
     if given.markdown is not None:
         page = given.markdown.read_text(encoding='utf-8')
-        given.markdown.write_text(tables.with_table(page, 'restarts', HEAD, rows, list(scenes())), encoding='utf-8')
+        given.markdown.write_text(tables.with_table(page, 'restarts' if given.ranks == (1, 1) else 'ranks', HEAD, rows, list(scenes())), encoding='utf-8')
     if failed:
         print(f'the runs that failed are in {place}')
     else:

@@ -61,7 +61,11 @@ class Dense {
     search_.build(bodies_, cell_, skins_, team_);
   }
   /// Builds the contact table from the pairs found.
-  void rebuild() { pairs_.rebuild(bodies_, search_, false, law_->state(), {}, team_); }
+  void rebuild() {
+    Ranks alone;
+    alone.resize(chunks_of(bodies_.count()));
+    pairs_.rebuild(bodies_, search_, false, law_->state(), {}, alone, team_);
+  }
   void contacts() {
     for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk) {
       const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);

@@ -27,7 +27,7 @@ class CriticalStepAtWalls : public testing::Test {
     state_.surfaces.push_back(floor_surface());
     search(state_, passes_);
   }
-  CriticalStep::Instant now() const {
+  CriticalStep::Instant now() {
     return {.bodies = state_.bodies,
             .pairs = state_.pairs,
             .walls = state_.wall_contacts,
@@ -37,16 +37,18 @@ class CriticalStepAtWalls : public testing::Test {
             .skins = state_.lists.skins(),
             .near = way,
             .ahead = 2 * way,
-            .overlap = 0};
+            .overlap = 0,
+            .halo = state_.halo,
+            .ranks = passes_.ranks()};
   }
   double find() { return critical_.find(now(), passes_.team()).spring; }
   double renew() { return critical_.renew(now(), change, passes_.team()).spring; }
-  bool due() const { return critical_.due(state_.wall_contacts, state_.lists.skins(), change); }
+  bool due() { return critical_.due(state_.wall_contacts, state_.lists.skins(), change, passes_.ranks()); }
   /// The floor moves far away, and candidates are found there.
   void remove_floor() {
     state_.surfaces[0].pose.shift.z() = -1;
     state_.wall_contacts.rebuild(state_.bodies, state_.group, state_.surfaces, state_.lists.skins(),
-                                 state_.settings.fields, {}, passes_.team());
+                                 state_.settings.fields, {}, passes_.ranks(), passes_.team());
   }
   void lighten(std::size_t body) { state_.bodies.velocity[body].w *= 4; }
 

@@ -19,12 +19,12 @@ class Lists : public testing::Test {
   Passes passes_{1};
 };
 
-TEST_F(Lists, AreDueAtFirst) { EXPECT_TRUE(NeighbourLists().due(state_.bodies, state_.cell)); }
+TEST_F(Lists, AreDueAtFirst) { EXPECT_TRUE(NeighbourLists().due(state_.bodies, state_.cell, passes_.ranks())); }
 
 TEST_F(Lists, BodiesAtRestGetTheLeastSkin) {
   EXPECT_DOUBLE_EQ(state_.lists.skins().of_chunk(0), least_skin);
   EXPECT_EQ(state_.lists.rebuilds(), 1u);
-  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell));
+  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell, passes_.ranks()));
 }
 
 TEST_F(Lists, FastBodiesGetWiderSkins) {
@@ -37,22 +37,22 @@ TEST_F(Lists, AreDueOnceABodyHasUsedUpItsSkin) {
   passes_.chunks()[0].motion.largest_speed = 0.9 * least_skin;
   state_.bodies.position[0].y += 0.9 * least_skin;
   state_.lists.advance(1, 0, passes_);
-  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell));
+  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell, passes_.ranks()));
   state_.bodies.position[0].y += 0.2 * least_skin;
   state_.lists.advance(1, 0, passes_);
-  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell));
+  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell, passes_.ranks()));
 }
 
 TEST_F(Lists, AreNotDueWhereABodyHasComeBack) {
   passes_.chunks()[0].motion.largest_speed = 0.9 * least_skin;
   for (int i = 0; i < 5; ++i) state_.lists.advance(1, 0, passes_);
-  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell)) << "its true distance is 0";
+  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell, passes_.ranks())) << "its true distance is 0";
 }
 
 TEST_F(Lists, AreDueAtWallsAloneOnceAWallHasUsedUpItsSkin) {
   EXPECT_FALSE(state_.lists.due_at_walls());
   state_.lists.advance_walls(1.1 * least_skin);
-  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell));
+  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell, passes_.ranks()));
   EXPECT_TRUE(state_.lists.due_at_walls());
   state_.lists.begin_search_at_walls(state_.cell, state_.statistics, state_.time.dt, 2);
   EXPECT_FALSE(state_.lists.due_at_walls());
@@ -75,15 +75,15 @@ TEST_F(Lists, SkinsAtWallsIncludeTheWayBack) {
 
 TEST_F(Lists, AreDueOnRequest) {
   state_.lists.request_rebuild();
-  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell));
+  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell, passes_.ranks()));
 }
 
 TEST_F(Lists, AreDueOnceStrainHasUsedUpTheSkins) {
   passes_.chunks()[0].motion.largest_speed = 0;
   state_.lists.advance(1, 1.9 * least_skin, passes_);
-  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell)) << "two bodies share it";
+  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell, passes_.ranks())) << "two bodies share it";
   state_.lists.advance(1, 0.2 * least_skin, passes_);
-  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell));
+  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell, passes_.ranks()));
 }
 
 TEST_F(Lists, AShortestPeriodIsTwiceTheReach) {

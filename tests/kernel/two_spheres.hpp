@@ -75,9 +75,9 @@ inline void search(State& state, Passes& passes, std::optional<std::span<const s
   passes.resize(state.bodies.count());
   state.lists.rebuild(state.bodies, state.cell, state.statistics, state.reaches(), state.time.dt, 0, passes);
   state.pairs.rebuild(state.bodies, state.lists.search(), state.cell.periodic(), state.settings.fields, order,
-                      passes.team());
+                      passes.ranks(), passes.team());
   state.wall_contacts.rebuild(state.bodies, state.group, state.surfaces, state.lists.skins(), state.settings.fields,
-                              order, passes.team());
+                              order, passes.ranks(), passes.team());
 }
 
 /// Evaluates the contacts of the only chunk.

@@ -68,6 +68,7 @@ TEST(ResultsFolder, HoldsAWholeRun) {
   EXPECT_EQ(run.at("description").at("title"), "direct shear");
   EXPECT_EQ(run.at("seed"), 4);
   EXPECT_EQ(run.at("threads"), 2);
+  EXPECT_EQ(run.at("ranks"), 1);
   EXPECT_EQ(run.at("plugins").at(0).at("name"), "linear-rolling");
   EXPECT_EQ(run.at("plugins").at(0).at("build").at("compiler"), build_tag().compiler);
   EXPECT_NE(run.at("grit").at("version"), "");

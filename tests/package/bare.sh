@@ -17,7 +17,7 @@ set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin
 step() { echo "== $*"; }
 apt-get update -qq
-ours=(grit grit-dev grit-doc python3-grit)
+ours=(grit grit-dev grit-doc grit-mpi python3-grit)
 for_the_plugin=(make libgtest-dev libgmock-dev) # what cmake and grit-dev recommend
 remove() { apt-get purge -qq --autoremove "${ours[@]}" "${for_the_plugin[@]}" > /first-steps/purge.log 2>&1; }
 ! dpkg-query -W grit > /dev/null 2>&1 || remove # of a test that failed

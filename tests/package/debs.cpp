@@ -18,7 +18,7 @@ using testing::IsEmpty;
 using testing::IsSupersetOf;
 using testing::Not;
 
-const std::vector<std::string> all_packages{"grit", "grit-dev", "python3-grit", "grit-doc"};
+const std::vector<std::string> all_packages{"grit", "grit-mpi", "grit-dev", "python3-grit", "grit-doc"};
 
 std::string printed(const std::string& script) {
   const OwnFolder folder;
@@ -53,7 +53,7 @@ const std::vector<std::string>& files_of(const std::string& package) {
 }
 
 TEST(Debs, AreFour) {
-  EXPECT_EQ(printed("ls '" DEBS "' | sed 's/_.*//' | sort"), "grit\ngrit-dev\ngrit-doc\npython3-grit\n");
+  EXPECT_EQ(printed("ls '" DEBS "' | sed 's/_.*//' | sort"), "grit\ngrit-dev\ngrit-doc\ngrit-mpi\npython3-grit\n");
 }
 
 TEST(Debs, HaveTheirFilesInDebiansPlaces) {
@@ -109,7 +109,7 @@ TEST(Debs, DependOnWhatTheyLoad) {
 
 TEST(Debs, SayWhatTheyAre) {
   const std::map<std::string, std::string> sections{
-      {"grit", "science"}, {"grit-dev", "libdevel"}, {"python3-grit", "python"}, {"grit-doc", "doc"}};
+      {"grit", "science"}, {"grit-mpi", "science"}, {"grit-dev", "libdevel"}, {"python3-grit", "python"}, {"grit-doc", "doc"}};
   for (const auto& [package, section] : sections) {
     EXPECT_EQ(field(package, "Section"), section);
     EXPECT_THAT(field(package, "Version"), testing::StartsWith(GRIT_VERSION));

@@ -41,6 +41,12 @@ TEST(Facts, ReportTheCostOfARun) {
   EXPECT_EQ(fact(facts, "speed").value, "12.5 M");
 }
 
+TEST(Facts, CountTheRanksOfARun) {
+  const auto facts =
+      cost_facts(run_with({{"time", 1.0}, {"steps", 10}, {"wall_s", 75.0}, {"threads", 4}, {"ranks", 2}}, {}));
+  EXPECT_EQ(fact(facts, "run time").note, "2 ranks of 4 threads");
+}
+
 /// A run of two stages, the second from 0.1 s, with the probe "probe" and its channel "angle" [rad].
 RunResults run_that_found(const std::vector<double>& angles, const Description& output) {
   std::vector<double> time, strain;

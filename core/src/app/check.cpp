@@ -138,7 +138,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   before = "; removal by ";
   for (const auto& [name, engine] : components.engines)
     if (engine->phase() == Phase::removal) std::cout << std::exchange(before, ", ") << name;
-  std::cout << "\n\nbodies: " << bodies << ", contacts of pairs at the start: " << kernel.state().pairs.touching_count()
+  std::cout << "\n\nbodies: " << bodies << ", contacts of pairs at the start: " << kernel.contact_count()
             << '\n';
   const TimeStepDescription& wish = description.time_step;
   const double safe = wish.safety * kernel.critical_time_step();

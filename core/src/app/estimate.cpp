@@ -30,7 +30,7 @@ Estimate estimate(const Scene& scene, const Components& components, const Kernel
   const std::size_t bodies = kernel.world().positions().size();
   const TimeStepDescription& wish = description.time_step;
   const double safe = wish.safety * kernel.critical_time_step();
-  const bool cloud = kernel.state().pairs.touching_count() * 2 < bodies;
+  const bool cloud = kernel.contact_count() * 2 < bodies;
   Estimate all;
   all.dt = cloud && !wish.value ? std::min(kernel.world().dt(), dense_step_fraction * safe) : kernel.world().dt();
   all.stages = expected_stages(scene, components, bodies, all.dt);

@@ -11,6 +11,7 @@
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_jobs.hpp"
+#include "app/run_ranks.hpp"
 #include "app/run_setup.hpp"
 #include "app/wall_shapes.hpp"
 #include "app/watch.hpp"
@@ -28,6 +29,7 @@
 #include "output/read_results.hpp"
 #include "output/reference_curve.hpp"
 #include "output/shell_word.hpp"
+#include "plugins/build_facts.hpp"
 #include "report/report_page.hpp"
 #include "simulation/parts.hpp"
 #include "simulation/recorded_run.hpp"
@@ -137,13 +139,14 @@ RunSummary run_or_advise(Simulation& simulation, const RunJob& job) try {
   throw FileError(out_of_memory() + "\n  then " + way_on(job));
 }
 
-RunFacts facts_of(const RunJob& job, unsigned threads, const std::vector<std::string>& command_line) {
+RunFacts facts_of(const RunJob& job, unsigned threads, unsigned ranks, const std::vector<std::string>& command_line) {
   const OpenedScene& opened = *job.opened;
   const SceneDescription& description = *opened.scene.description;
   return {.description = resolved(description),
           .plugins = plugins_used(description, *opened.registry),
           .seed = description.seed,
           .threads = threads,
+          .ranks = ranks,
           .clumps = clumps_of(opened.live.components()),
           .source = job.source,
           .commands = {command_line}};
@@ -190,14 +193,72 @@ void print_speed(const RunSummary& summary) {
   std::cout << ")\n";
 }
 
+/// What all ranks of a run must have alike.
+std::vector<RankFact> facts_to_agree_on(const RunJob& job) {
+  const SceneDescription& description = *job.opened->scene.description;
+  const BuildFacts& build = build_facts();
+  std::string plugins;
+  for (const PluginUsed& one : plugins_used(description, *job.opened->registry))
+    plugins += (plugins.empty() ? "" : ", ") + one.kind + '/' + one.name + ' ' + one.version + " for " +
+               one.tag.instruction_set;
+  return {{"grit",
+           std::string(build.version) + ' ' + build.revision + ", " + build.compiler + ", " + build.instruction_set},
+          {"plugins", plugins},
+          {"description", resolved(description).dump()}};
+}
+
+/// A checkpoint as bytes, or that there is none.
+std::vector<std::byte> bytes_of(const std::optional<LastCheckpoint>& last) {
+  Archive archive;
+  bool there = last.has_value();
+  Checkpoint checkpoint = there ? last->checkpoint : Checkpoint{};
+  archive(there, checkpoint.stage, checkpoint.time, checkpoint.step, checkpoint.state);
+  return archive.bytes();
+}
+
+/// What other ranks than the first do: the whole run, but they write nothing.
+ExitStatus follow(const Options& options, RunRanks& ranks) {
+  RunJob job;
+  std::string failure;
+  const ExitStatus opened = report([&] {
+    job = named_job(options);
+    open(job, options);
+    return ExitStatus::done;
+  });
+  if (opened != ExitStatus::done) failure = ranks.messages();
+  const auto given = ranks.agree(failure.empty() ? facts_to_agree_on(job) : no_facts, failure, {});
+  if (!given || given->empty()) return ExitStatus::done;  // the first one reports why
+  Archive archive(*given);
+  bool resumes = false;
+  Checkpoint checkpoint;
+  archive(resumes, checkpoint.stage, checkpoint.time, checkpoint.step, checkpoint.state);
+  const std::atomic<bool>& interrupted = catch_interrupts();
+  const StateRequest state = picture_state(*job.opened->scene.description);
+  Simulation simulation(std::make_unique<Simulation::Parts>(
+      job.opened, resumes ? job.opened->prepare_to_resume(state) : job.opened->prepare(state), ranks.threads(options),
+      nullptr, ranks.communicator()));
+  simulation.interrupt_when([&] { return interrupted.load(); });
+  simulation.on_checkpoint([](const Checkpoint&) {}, 0);
+  if (resumes) simulation.resume(checkpoint);
+  const RunSummary summary = run_recorded(simulation);
+  if (summary.status == "interrupted") return ExitStatus::interrupted;
+  return summary.status == "failed" ? ExitStatus::numerics : ExitStatus::done;
+}
+
+/// Before the first rank begins: compares the ranks, and gives them the checkpoint.
+void begin_together(RunRanks& ranks, const RunJob& job, const std::optional<LastCheckpoint>& last) {
+  if (ranks.several() && !ranks.agree(facts_to_agree_on(job), "", bytes_of(last)))
+    throw Error(std::to_string(ranks.count()) + " ranks cannot run this together, see above");
+}
+
 ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::string>& command_line,
-                   const std::optional<Listener>& listener) {
+                   const std::optional<Listener>& listener, RunRanks& ranks) {
   const std::atomic<bool>& interrupted = end_on_interrupts();
   if (interrupted.load()) return ExitStatus::interrupted;  // between two runs
   const std::filesystem::path& folder = job.folder;
   const Scene& scene = job.opened->scene;
   const SceneDescription& description = *scene.description;
-  const unsigned threads = options.threads();
+  const unsigned threads = ranks.threads(options);
   const bool quiet = options.has("quiet");
   const auto say = [&](const std::string& line) {
     if (!quiet) std::cerr << line << std::endl;
@@ -206,13 +267,14 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   for (const auto& [pointer, why] : late_densities(scene)) warn_of_idle(scene.document, pointer, why);
   Description references = check_references(description.output);
   say(description.title.empty() ? job.file : job.file + ": " + description.title);
-  RunFacts facts = facts_of(job, threads, command_line);
+  RunFacts facts = facts_of(job, threads, ranks.count(), command_line);
   facts.references = std::move(references);
   std::optional<LastCheckpoint> last;
   if (job.existing == Existing::resume) {
     const auto before = read_run_json(folder);
     if (before && is_done(*before, folder, facts)) {
       std::cout << folder.string() << ": already complete\n";
+      if (ranks.several()) ranks.agree(facts_to_agree_on(job), "", {});
       complete(folder, options);
       return ExitStatus::done;
     }
@@ -227,6 +289,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   if (!last) check_disk(scene, job.opened->live, prepared.bodies, folder);
   ResultsOptions written = results_of(job, std::move(facts), prepared.bodies);
   written.from_previous = last && !last->note.empty();
+  begin_together(ranks, job, last);
   catch_interrupts();  // placing bodies takes long, and leaves nothing that would have to be saved
   ResultsFolder results(std::move(written));
   std::optional<Watch> watch;  // before the simulation, which makes threads
@@ -237,7 +300,8 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     say(line);
   });
 
-  Simulation simulation(std::make_unique<Simulation::Parts>(job.opened, std::move(prepared), threads, &curves));
+  Simulation simulation(
+      std::make_unique<Simulation::Parts>(job.opened, std::move(prepared), threads, &curves, ranks.communicator()));
   simulation.interrupt_when([&] { return interrupted.load(); });
   simulation.on_checkpoint(
       [&](const Checkpoint& now) { simulation.done() ? results.final_state(now) : results.checkpoint(now); },
@@ -252,7 +316,8 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     say("continues from step " + std::to_string(checkpoint.step) + ", stage \"" + checkpoint.stage + "\"");
     simulation.resume(checkpoint);
   }
-  say(counted(simulation.world().positions().size(), "body", "bodies") + ", " + counted(threads, "thread", "threads") +
+  say(counted(simulation.world().ids().size(), "body", "bodies") + ", " +
+      (ranks.several() ? std::to_string(ranks.count()) + " ranks of " : "") + counted(threads, "thread", "threads") +
       ", results in " + folder.string());
   const RunSummary summary = run_or_advise(simulation, job);
   bar.end();
@@ -290,12 +355,18 @@ void run_options(Options& options) {
   options.add_set();
 }
 
-ExitStatus run_command(const Options& options) {
-  outlive_readers();
+namespace {
+
+ExitStatus run_jobs(const Options& options, RunRanks& ranks) {
   if (options.words().empty()) throw UsageError("no description given; see 'grit run --help'");
   options.warn_of_threads();
   if (options.has("resume") && options.has("overwrite"))
     throw UsageError("--resume continues results, --overwrite replaces them; give one of them");
+  if (ranks.several() && options.words().size() > 1)
+    throw UsageError("found " + std::to_string(options.words().size()) + " descriptions for " +
+                     std::to_string(ranks.count()) + " ranks, which run one; start them one by one");
+  ranks.expect_agreement();
+  if (!ranks.is_first()) return follow(options, ranks);
   auto jobs = jobs_of(options);
   open_all(jobs, options);
   const auto listener = listener_of(options);
@@ -306,7 +377,8 @@ ExitStatus run_command(const Options& options) {
   for (const RunJob& job : jobs) {
     const ExitStatus one = report([&] {
       try {
-        return at_its_place(job.opened->scene.document, [&] { return run_one(job, options, command_line, listener); });
+        return at_its_place(job.opened->scene.document,
+                            [&] { return run_one(job, options, command_line, listener, ranks); });
       } catch (const NumericsError& error) {
         throw NumericsError(job.file + ": " + error.what());
       }
@@ -316,6 +388,18 @@ ExitStatus run_command(const Options& options) {
     if (one != ExitStatus::done && one != ExitStatus::numerics) break;
   }
   return status;
+}
+
+}  // namespace
+
+ExitStatus run_command(const Options& options) {
+  outlive_readers();
+  RunRanks ranks;
+  if (!ranks.several()) return run_jobs(options, ranks);
+  const ExitStatus status = report([&] { return run_jobs(options, ranks); });
+  // Ranks wait for the first one until it has compared them.
+  if (ranks.is_awaited()) ranks.agree(no_facts, "failed", {});
+  return ranks.end(status);
 }
 
 }  // namespace grit

@@ -64,6 +64,13 @@ std::set<std::filesystem::path> inputs_of(const RunJob& job) {
   return inputs;
 }
 
+RunJob named_job(const Options& options) { return job_of(options.words().front(), options); }
+
+void open(RunJob& job, const Options& options) {
+  const std::shared_ptr<const Registry> registry = options.registry();
+  job.opened = std::make_shared<OpenedScene>(registry, load_scene(job.file, options.list("set"), *registry));
+}
+
 std::vector<RunJob> jobs_of(const Options& options) {
   const auto& files = options.words();
   std::vector<RunJob> jobs;

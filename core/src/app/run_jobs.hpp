@@ -26,6 +26,11 @@ struct RunJob {
 /// their names.
 std::vector<RunJob> jobs_of(const Options& options);
 
+/// The only one, without its folder, for a rank that writes nothing. Throws UsageError, FileError.
+RunJob named_job(const Options& options);
+/// Opens it. Throws DescriptionError, FileError, PluginError.
+void open(RunJob& job, const Options& options);
+
 /// Opens all of them before the first is run, so that a fault in the last is reported at once. Throws DescriptionError
 /// with the problems of all; FileError, also for a run that would replace a file that it reads; PluginError.
 void open_all(std::vector<RunJob>& jobs, const Options& options);

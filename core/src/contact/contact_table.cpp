@@ -9,6 +9,7 @@
 
 #include "bodies/reordering.hpp"
 #include "bodies/restored.hpp"
+#include "contact/chunk_boxes.hpp"
 #include "grit/contact/fields.hpp"
 #include "grit/error.hpp"
 
@@ -51,7 +52,7 @@ void check_size(const std::vector<std::size_t>& within, const Candidates& found)
 
 void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic,
                            std::span<const StateField> fields, std::optional<std::span<const std::uint32_t>> order,
-                           Team& team) {
+                           Ranks& ranks, Team& team) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
   std::vector<std::uint32_t> now;
@@ -61,7 +62,10 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
     now.resize(bodies_);
     std::iota(now.begin(), now.end(), 0u);
   }
+  const std::vector<Sent> sent = exchange_histories(now, ranks);
+  const auto slots_before = static_cast<std::uint32_t>(a_.size());
   bodies_ = count;
+  take_chunks(ranks);
 
   std::vector<std::uint32_t> former_start(count + 1, 0);  // by lower body
   const auto each_former = [&](auto&& use) {
@@ -71,6 +75,10 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
         const std::uint32_t p = now[a_[slot]], q = now[b_[slot]];
         if (p != body_gone && q != body_gone) use(std::min(p, q), Former{std::max(p, q), slot, p > q, nowhere});
       }
+    for (std::uint32_t k = 0; k < sent.size(); ++k) {
+      const auto [p, q] = sent[k];
+      use(std::min(p, q), Former{std::max(p, q), slots_before + k, p > q, nowhere});
+    }
   };
   each_former([&](std::uint32_t lower, const Former&) { ++former_start[lower + 1]; });
   std::partial_sum(former_start.begin(), former_start.end(), former_start.begin());
@@ -82,31 +90,11 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   former_start.front() = 0;
   give_back(now);
 
-  // Candidates, chunk by chunk: first those within the chunk, then those across; of each kind first those that touch,
-  // then the others by their gap, to within a 64th of the largest.
   const std::size_t chunk_count = chunks_of(count);
-  found_.resize(chunk_count), within_.resize(chunk_count);
-  team.each(chunk_count, [&](std::size_t chunk) {
-    static thread_local std::vector<Candidate> found;
-    found.clear();
-    const std::size_t first = chunk * chunk_bodies, last = std::min(count, first + chunk_bodies);
-    for (std::size_t i = first; i < last; ++i) search.neighbours(bodies, static_cast<std::uint32_t>(i), found);
-    constexpr std::size_t steps = 64, kinds = 1 + steps;
-    float widest = std::numeric_limits<float>::min();
-    for (const Candidate& c : found) widest = std::max(widest, c.gap);
-    const auto place = [&](const Candidate& c) {
-      const std::size_t step =
-          c.touching() ? 0 : 1 + std::min(steps - 1, static_cast<std::size_t>(c.gap / widest * steps));
-      return c.b < last ? step : kinds + step;
-    };
-    std::array<std::size_t, 2 * kinds + 1> next{};
-    for (const Candidate& c : found) ++next[place(c) + 1];
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    within_[chunk] = next[kinds];
-    found_[chunk].resize(found.size());
-    for (const Candidate& c : found)
-      found_[chunk][next[place(c)]++] = {c.b, c.gap, static_cast<std::uint8_t>(c.a - first), c.image};
-  });
+  found_.resize(chunk_count), within_.assign(chunk_count, 0), widest_.assign(chunk_count, 0);
+  team.each(last_own_ - first_own_, [&](std::size_t k) { find_pairs(first_own_ + k, bodies, search); });
+  ranks.complete(widest_);
+  if (ranks.several()) find_pairs_below(bodies, search, team);
   check_size(within_, found_);
   chunks_.resize(chunk_count);
   std::uint32_t blocks = 0;
@@ -169,6 +157,9 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   const auto number = [&](std::size_t slot, std::size_t f) -> double& {
     return state_[slot / block_size * field_count + f].lane[slot % block_size];
   };
+  const auto former_number = [&](std::size_t from, std::size_t f) {
+    return from < slots_before ? number(from, f) : received_[(from - slots_before) * field_count + f];
+  };
   field_.resize(field_count > 0 ? formers.size() : 0);
   for (std::size_t f = 0; f < field_count + 1; ++f)
     team.each(chunk_count, [&](std::size_t chunk) {
@@ -182,9 +173,10 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
       }
       if (f == field_count) return;
       for (std::size_t m = first; m < last; ++m)
-        field_[m] = number(formers[m].from, f) * (formers[m].swapped ? fields_[f].swap : 1.0);
+        field_[m] = former_number(formers[m].from, f) * (formers[m].swapped ? fields_[f].swap : 1.0);
     });
   state_.resize(lines);
+  give_back(received_);
 
   // Rows of contacts are written before they are read. Those of pairs that were near but do not interact are read
   // without being written.
@@ -197,6 +189,104 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   });
   make_inbox(count);
   find_reached();
+  find_evaluated();
+}
+
+void ContactTable::take_chunks(const Ranks& ranks) {
+  cuts_ = ranks.cuts();
+  first_own_ = ranks.first(), last_own_ = ranks.last();
+  whole_ = !ranks.several();
+}
+
+void ContactTable::find_evaluated() {
+  evaluated_.clear();
+  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk)
+    if ((chunk >= first_own_ && chunk < last_own_) || chunks_[chunk].across.first < chunks_[chunk].across.last)
+      evaluated_.push_back(static_cast<std::uint32_t>(chunk));
+}
+
+std::vector<ContactTable::Sent> ContactTable::exchange_histories(std::span<const std::uint32_t> now, Ranks& ranks) {
+  received_.clear();
+  if (whole_) return {};  // all ranks have all pairs
+  std::vector<std::vector<Sent>> pairs(ranks.count());
+  std::vector<std::vector<double>> numbers(ranks.count());
+  for (const Kind kind : {Kind::within, Kind::across}) {
+    const Blocks own = own_blocks(kind);
+    each_touching(own.first, own.last, [&](std::size_t c) {
+      const std::uint32_t p = now[a_[c]], q = now[b_[c]];
+      if (p == body_gone || q == body_gone) return;
+      const unsigned to = ranks.cuts().owner_of_body(p), other = ranks.cuts().owner_of_body(q);
+      const auto send = [&](unsigned rank) {
+        if (rank == ranks.rank() || rank == cuts_.owner_of_body(b_[c])) return;
+        pairs[rank].push_back({p, q});
+        for (std::size_t f = 0; f < fields_.size(); ++f) numbers[rank].push_back(history_of(c, f));
+      };
+      send(to);
+      if (other != to) send(other);
+    });
+  }
+  const std::vector<std::vector<Sent>> found = ranks.exchange(pairs);
+  std::vector<Sent> sent;
+  for (const auto& list : found) sent.insert(sent.end(), list.begin(), list.end());
+  for (const auto& list : ranks.exchange(numbers)) received_.insert(received_.end(), list.begin(), list.end());
+  return sent;
+}
+
+// Candidates, chunk by chunk: first those within the chunk, then those across; of each kind first those that touch,
+// then the others by their gap, to within a 64th of the largest.
+void ContactTable::find_pairs(std::size_t chunk, const Bodies& bodies, const NeighbourSearch& search) {
+  static thread_local std::vector<Candidate> found;
+  found.clear();
+  const ChunkRange range(chunk, bodies.count());
+  for (std::size_t i = range.first; i < range.last; ++i)
+    search.neighbours(bodies, static_cast<std::uint32_t>(i), found);
+  widest_[chunk] = std::numeric_limits<float>::min();
+  for (const Candidate& c : found) widest_[chunk] = std::max(widest_[chunk], c.gap);
+  sort_pairs(chunk, found, range.last);
+}
+
+void ContactTable::find_pairs_below(const Bodies& bodies, const NeighbourSearch& search, Team& team) {
+  const ChunkBoxes boxes(bodies, search.cell(), search.skins(), team);
+  const std::vector<std::size_t> near = boxes.near_below(first_own_, last_own_);
+  const auto below = static_cast<std::uint32_t>(first_own_ * chunk_bodies);
+  std::vector<std::vector<Candidate>> by_chunk(last_own_ - first_own_);
+  team.each(by_chunk.size(), [&](std::size_t k) {
+    const std::size_t chunk = first_own_ + k;
+    if (std::ranges::none_of(near, [&](std::size_t other) { return boxes.near(chunk, other); })) return;
+    const ChunkRange range(chunk, bodies.count());
+    for (std::size_t i = range.first; i < range.last; ++i)
+      search.neighbours_below(bodies, static_cast<std::uint32_t>(i), below, by_chunk[k]);
+  });
+  std::vector<Candidate> found;
+  for (auto& list : by_chunk) {
+    found.insert(found.end(), list.begin(), list.end());
+    give_back(list);
+  }
+  std::ranges::sort(found, [](const Candidate& x, const Candidate& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
+  for (auto begin = found.begin(); begin != found.end();) {
+    const std::size_t chunk = begin->a / chunk_bodies;
+    const auto end = std::find_if(begin, found.end(), [&](const Candidate& c) { return c.a / chunk_bodies != chunk; });
+    sort_pairs(chunk, {begin, end}, (chunk + 1) * chunk_bodies);
+    begin = end;
+  }
+}
+
+void ContactTable::sort_pairs(std::size_t chunk, std::span<const Candidate> found, std::size_t last) {
+  constexpr std::size_t steps = 64, kinds = 1 + steps;
+  const float widest = widest_[chunk];
+  const auto place = [&](const Candidate& c) {
+    const std::size_t step =
+        c.touching() ? 0 : 1 + std::min(steps - 1, static_cast<std::size_t>(c.gap / widest * steps));
+    return c.b < last ? step : kinds + step;
+  };
+  std::array<std::size_t, 2 * kinds + 1> next{};
+  for (const Candidate& c : found) ++next[place(c) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  within_[chunk] = next[kinds];
+  found_[chunk].resize(found.size());
+  const std::size_t first = chunk * chunk_bodies;
+  for (const Candidate& c : found)
+    found_[chunk][next[place(c)]++] = {c.b, c.gap, static_cast<std::uint8_t>(c.a - first), c.image};
 }
 
 void ContactTable::make_inbox(std::size_t bodies) {
@@ -354,10 +444,17 @@ void ContactTable::serialize(Archive& archive) {
   archive(bodies_, chunks_, a_, b_, image_, touching_, acting_, asleep_until_, state_, first_cross_, near_);
   if (!archive.restoring()) return;
   check_restored();
+  finish(Ranks());
+}
+
+void ContactTable::finish(Ranks ranks) {
+  if (!ranks.several()) ranks.resize(chunks_.size());
+  take_chunks(ranks);
   // Rows of pairs in contact are written before they are read.
   row_.assign(a_.size() - first_cross_, {});
   make_inbox(bodies_);
   find_reached();
+  find_evaluated();
 }
 
 void ContactTable::check_restored() const {
@@ -396,10 +493,102 @@ void ContactTable::check_restored(std::size_t chunk, Blocks blocks, bool within)
   }
 }
 
+ContactTable::Blocks ContactTable::own_blocks(Kind kind) const {
+  if (first_own_ == last_own_) return {};
+  const auto of = [kind](const Chunk& chunk) { return kind == Kind::within ? chunk.within : chunk.across; };
+  const std::uint32_t first = of(chunks_[first_own_]).first, last = of(chunks_[last_own_ - 1]).last;
+  return {first, first, last};
+}
+
+ContactTable ContactTable::joined(Ranks& ranks) const {
+  if (whole_) return *this;
+  ContactTable all;
+  all.bodies_ = bodies_, all.fields_ = fields_, all.chunks_ = chunks_;
+  ranks.complete(all.chunks_);
+  std::uint32_t blocks = 0;
+  for (const Kind kind : {Kind::within, Kind::across}) {
+    for (Chunk& chunk : all.chunks_) {
+      Blocks& own = kind == Kind::within ? chunk.within : chunk.across;
+      own = {blocks, blocks + (own.near - own.first), blocks + (own.last - own.first)};
+      blocks = own.last;
+    }
+    if (kind == Kind::within) all.first_cross_ = std::size_t{blocks} * block_size;
+    const Blocks own = own_blocks(kind);
+    const auto join = [&](auto& to, const auto& from, std::size_t per_block) {
+      // Some arrays are empty on all ranks, others where there is no block.
+      const auto entry = [&](std::size_t block) {
+        return from.begin() + std::ptrdiff_t(std::min(from.size(), block * per_block));
+      };
+      const auto found = ranks.all(std::decay_t<decltype(from)>(entry(own.first), entry(own.last)));
+      to.insert(to.end(), found.begin(), found.end());
+    };
+    join(all.a_, a_, block_size), join(all.b_, b_, block_size), join(all.near_, near_, block_size);
+    join(all.image_, image_, block_size);
+    join(all.touching_, touching_, 1), join(all.acting_, acting_, 1), join(all.asleep_until_, asleep_until_, 1);
+    join(all.state_, state_, fields_.size());
+  }
+  all.finish(Ranks());
+  return all;
+}
+
+ContactTable ContactTable::part(const Ranks& ranks) const {
+  if (!ranks.several()) return *this;
+  ContactTable own;
+  own.bodies_ = bodies_, own.fields_ = fields_, own.chunks_.resize(chunks_.size());
+  const std::size_t fields = fields_.size();
+  const auto pad = static_cast<std::uint32_t>(bodies_);
+  const auto copy_block = [&](std::size_t chunk, std::span<const std::uint32_t> slots) {
+    std::uint8_t touches = 0, acts = 0;
+    float asleep_until = std::numeric_limits<float>::max();
+    own.state_.resize(own.state_.size() + fields);
+    StateLine* const lines = own.state_.data() + own.state_.size() - fields;
+    for (std::size_t k = 0; k < block_size; ++k) {
+      const bool there = k < slots.size();
+      const std::size_t c = there ? slots[k] : 0, block = c / block_size;
+      const auto bit = [&](std::uint8_t mask) {
+        return static_cast<std::uint8_t>((there ? mask >> c % block_size & 1u : 0u) << k);
+      };
+      own.a_.push_back(there ? a_[c] : static_cast<std::uint32_t>(chunk * chunk_bodies));
+      own.b_.push_back(there ? b_[c] : pad), own.near_.push_back(there ? near_[c] : 0);
+      if (!image_.empty()) own.image_.push_back(there ? image_[c] : 0);
+      touches |= bit(touching_[block]);
+      if (!acting_.empty()) acts |= bit(acting_[block]);
+      if (!there) continue;
+      asleep_until = std::min(asleep_until, asleep_until_[block]);
+      for (std::size_t f = 0; f < fields; ++f) lines[f].lane[k] = history_of(c, f);
+    }
+    own.touching_.push_back(touches), own.asleep_until_.push_back(asleep_until);
+    if (!acting_.empty()) own.acting_.push_back(acts);
+  };
+  std::vector<std::uint32_t> slots;
+  for (const Kind kind : {Kind::within, Kind::across}) {
+    for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
+      const Blocks from = kind == Kind::within ? chunks_[chunk].within : chunks_[chunk].across;
+      Blocks& to = kind == Kind::within ? own.chunks_[chunk].within : own.chunks_[chunk].across;
+      slots.clear();
+      for (std::size_t c = std::size_t{from.first} * block_size; c < std::size_t{from.last} * block_size; ++c)
+        if (b_[c] != pad && (ranks.owns(chunk) || (kind == Kind::across && ranks.owns_body(b_[c]))))
+          slots.push_back(static_cast<std::uint32_t>(c));
+      to.first = to.near = to.last = static_cast<std::uint32_t>(own.touching_.size());
+      for (std::size_t first = 0; first < slots.size(); first += block_size) {
+        copy_block(chunk, std::span(slots).subspan(first, std::min(block_size, slots.size() - first)));
+        ++to.last;
+        if (near_[slots[first]] != 0) to.near = to.last;
+      }
+    }
+    if (kind == Kind::within) own.first_cross_ = own.a_.size();
+  }
+  own.finish(ranks);
+  return own;
+}
+
 std::size_t ContactTable::touching_count() const {
   std::size_t count = 0;
-  for (const std::uint8_t mask : acting_.empty() ? touching_ : acting_)
-    count += static_cast<std::size_t>(std::popcount(mask));
+  for (const Kind kind : {Kind::within, Kind::across}) {
+    const Blocks own = own_blocks(kind);
+    for (std::size_t block = own.first; block < own.last; ++block)
+      count += static_cast<std::size_t>(std::popcount(acting_.empty() ? touching_[block] : acting_[block]));
+  }
   return count;
 }
 

@@ -13,6 +13,7 @@
 #include "contact/search.hpp"
 #include "contact/skins.hpp"
 #include "grit/contact/contact_law.hpp"
+#include "ranks/ranks.hpp"
 #include "threads/team.hpp"
 
 namespace grit {
@@ -28,12 +29,15 @@ inline constexpr bool plain_numbers<StateLine> = true;
 /// Pairs are sorted by the chunk of their lower body, the nearest first. Blocks are then full of contacts, and the
 /// others are skipped until their bodies may have come close. Pairs within a chunk add to the sums of both bodies; only
 /// pairs across chunks write a row for b. Contact histories are kept when the table is rebuilt.
+///
+/// With several ranks, each has the pairs of its own chunks, and those of its bodies with lower bodies of other ranks.
+/// Both ranks evaluate these and keep their histories.
 class ContactTable {
  public:
   /// `order[i]` is the old index of the body that now has index i; none if indices have not changed. Bodies that are
   /// not in it have left: all of them, if it is empty.
   void rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic, std::span<const StateField> fields,
-               std::optional<std::span<const std::uint32_t>> order, Team& team);
+               std::optional<std::span<const std::uint32_t>> order, Ranks& ranks, Team& team);
   /// Changes the fields of the contact history; those in both sets are kept.
   void set_fields(std::span<const StateField> fields);
 
@@ -50,12 +54,16 @@ class ContactTable {
   /// Evaluates one chunk: writes its rows and adds to the sums of its bodies, by index, and of no others. Returns the
   /// largest overlap over a radius.
   double evaluate(std::size_t chunk, const Instant& at, BodySum* sum, Losses* losses);
-  /// Calls use(candidate, row) for all contacts of an evaluated instant, in order.
+  /// The chunks to evaluate, in ascending order: the own ones, and others with pairs of own bodies.
+  const std::vector<std::uint32_t>& evaluated() const { return evaluated_; }
+  /// Pairs of bodies of one chunk, or of two.
+  enum class Kind { within, across };
+  /// Calls use(candidate, row) for the contacts of own chunks at an evaluated instant, in order. Those of all ranks
+  /// within chunks come before all across them.
   template <class Use>
-  void each_touching(const Instant& at, Use use) const {
+  void each_touching(Kind kind, const Instant& at, Use use) const {
     each_touching(
-        {0, 0, static_cast<std::uint32_t>(touching_.size())}, at,
-        [this](std::size_t block) { return touching_[block] != 0; }, use);
+        own_blocks(kind), at, [this](std::size_t block) { return touching_[block] != 0; }, use);
   }
   /// The same for the contacts of one chunk.
   template <class Use>
@@ -144,16 +152,26 @@ class ContactTable {
   const std::vector<std::vector<std::uint32_t>>& reached() const { return reached_; }
 
   std::size_t candidates() const { return a_.size(); }
+  /// Calls use(candidate) for all pairs, without padding.
+  template <class Use>
+  void each_candidate(Use use) const {
+    for (std::size_t c = 0; c < b_.size(); ++c)
+      if (b_[c] != bodies_) use(c);
+  }
   bool contacts(std::size_t c) const { return (touching_[c / block_size] >> (c % block_size) & 1) != 0; }
   std::uint32_t a(std::size_t c) const { return a_[c]; }
   std::uint32_t b(std::size_t c) const { return b_[c]; }
   std::uint8_t image(std::size_t c) const { return image_.empty() ? 0 : image_[c]; }
   /// Contact history of candidate c.
   std::vector<double> state(std::size_t c) const;
-  /// Number of pairs that overlap or have a force.
+  /// Number of pairs of own chunks that overlap or have a force.
   std::size_t touching_count() const;
   /// Memory [bytes].
   std::size_t bytes() const;
+  /// The whole table, with the pairs of all ranks; all of them must call this.
+  ContactTable joined(Ranks& ranks) const;
+  /// Of a whole table, what a rank has.
+  ContactTable part(const Ranks& ranks) const;
   /// Lists in their order, which is that of all sums. Restored into a table whose fields are set. Throws Error if they
   /// do not fit together.
   void serialize(Archive& archive);
@@ -225,6 +243,24 @@ class ContactTable {
     }
   }
   PairBatch batch(Blocks blocks, const Instant& at, std::uint32_t last_body) const;
+  /// The blocks of all own chunks.
+  Blocks own_blocks(Kind kind) const;
+  /// Finds the pairs of an own chunk, sorted as they will be in the table.
+  void find_pairs(std::size_t chunk, const Bodies& bodies, const NeighbourSearch& search);
+  /// The same for those of own bodies with lower ones of other ranks.
+  void find_pairs_below(const Bodies& bodies, const NeighbourSearch& search, Team& team);
+  void sort_pairs(std::size_t chunk, std::span<const Candidate> found, std::size_t last);
+  /// A pair whose history another rank has sent: present indices of its bodies.
+  struct Sent {
+    std::uint32_t a, b;
+  };
+  /// Sends histories to ranks that will have their pairs and have not had them. `now`: present index by former one.
+  std::vector<Sent> exchange_histories(std::span<const std::uint32_t> now, Ranks& ranks);
+  /// Which chunks are own ones, after they have been divided among ranks.
+  void take_chunks(const Ranks& ranks);
+  void find_evaluated();
+  /// Makes what follows from the lists.
+  void finish(Ranks ranks);
   void evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,
                       std::vector<ContactRow>& rows) const;
   /// Throws Error unless the restored lists fit together.
@@ -251,9 +287,15 @@ class ContactTable {
   std::vector<std::vector<std::uint32_t>> reached_;  // by chunk
   std::vector<std::vector<Found>> found_;            // by chunk
   std::vector<std::size_t> within_;                  // by chunk: number of candidates within it
+  std::vector<float> widest_;                        // by chunk: largest gap of its candidates [m]
+  Cuts cuts_;                                        // which rank had which chunk at the last rebuild
+  bool whole_ = true;                                // whether it has the pairs of all ranks
+  std::size_t first_own_ = 0, last_own_ = 0;         // chunks
+  std::vector<std::uint32_t> evaluated_;
   // Used by rebuilds only. They are kept, as new pages would have to be cleared each time.
   LargeArray<Former> formers_;
   LargeArray<double> field_;
+  std::vector<double> received_;  // histories from other ranks, one after the other
 };
 
 }  // namespace grit

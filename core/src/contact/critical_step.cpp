@@ -211,10 +211,11 @@ constexpr double growth_due = 1.1;
 Demand CriticalStep::find(const Instant& at, Team& team) {
   demand_.resize(at.bodies.count()), least_.resize(at.bodies.count());
   chunk_.resize(chunks_of(at.bodies.count()));
-  team.each(chunk_.size(), [&](std::size_t chunk) { evaluate_alone(chunk, at); });
-  std::vector<std::size_t> all(chunk_.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return evaluate(all, at, team);
+  std::vector<std::size_t> own(at.ranks.last() - at.ranks.first());
+  std::iota(own.begin(), own.end(), at.ranks.first());
+  team.each(own.size(), [&](std::size_t k) { evaluate_alone(own[k], at); });
+  if (!at.bodies.clumps.none()) at.ranks.complete_bodies(least_, at.bodies.count());
+  return evaluate(own, at, team);
 }
 
 void CriticalStep::check_restored(std::size_t bodies, std::size_t candidates) const {
@@ -261,15 +262,18 @@ double CriticalStep::stiffness(std::size_t chunk, const Instant& at) const {
   return *std::ranges::max_element(sums);
 }
 
-bool CriticalStep::due(const WallContacts& walls, const Skins& skins, const Change& change) const {
-  for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk)
-    if (moved(chunk, walls, skins, change.way) || pressed(chunk, change.overlap)) return true;
-  return false;
+bool CriticalStep::due(const WallContacts& walls, const Skins& skins, const Change& change, Ranks& ranks) const {
+  bool due = false;
+  for (std::size_t chunk = ranks.first(); chunk < ranks.last() && !due; ++chunk)
+    due = moved(chunk, walls, skins, change.way) || pressed(chunk, change.overlap);
+  return ranks.any(due);
 }
 
 Demand CriticalStep::renew(const Instant& at, const Change& change, Team& team) {
   std::vector<std::uint8_t> due(chunk_.size());
-  team.each(chunk_.size(), [&](std::size_t chunk) {
+  const std::size_t first = at.ranks.first();
+  team.each(at.ranks.last() - first, [&](std::size_t k) {
+    const std::size_t chunk = first + k;
     due[chunk] = moved(chunk, at.walls, at.skins, change.way);
     if (due[chunk] || !pressed(chunk, change.overlap)) return;
     Chunk& own = chunk_[chunk];
@@ -291,16 +295,21 @@ Demand CriticalStep::evaluate(const std::vector<std::size_t>& chunks, const Inst
     sum(chunks[k], at, closings);
     if (at.overlap > 0) chunk_[chunks[k]].stiffness = stiffness(chunks[k], at);
   });
+  Ranks& ranks = at.ranks;
   if (clumps.none()) {
+    at.halo.exchange(demand_, ranks);
     team.each(chunks.size(), [&](std::size_t k) { compare(chunks[k], at); });
   } else {
     // A clump's bodies may lie in several chunks.
+    for (auto* array : {&demand_, &clumps_.springs, &clumps_.dashpots})
+      ranks.complete_bodies(*array, at.bodies.count());
     clumps_.dashpot.resize(clumps.clump.size());
     for (std::size_t c = 0; c < clumps.clump.size(); ++c) gather(c, clumps);
-    team.each(chunk_.size(), [&](std::size_t chunk) { compare(chunk, at); });
+    team.each(ranks.last() - ranks.first(), [&](std::size_t k) { compare(ranks.first() + k, at); });
   }
   Demand all;
-  for (const Chunk& chunk : chunk_) all = larger(all, chunk.all());
+  for (std::size_t chunk = ranks.first(); chunk < ranks.last(); ++chunk) all = larger(all, chunk_[chunk].all());
+  for (const Demand& of_rank : ranks.each(all)) all = larger(all, of_rank);
   // The bound of a chunk cannot matter before its critical step has become the shortest.
   const double shortest = all.critical_time_step();
   for (const std::size_t chunk : chunks) {
@@ -308,6 +317,32 @@ Demand CriticalStep::evaluate(const std::vector<std::size_t>& chunks, const Inst
     chunk_[chunk].patience = std::min(ratio * ratio, most_patience);
   }
   return all;
+}
+
+void CriticalStep::complete(const Clumps& clumps, std::size_t bodies, Ranks& ranks) {
+  for (auto* array : {&demand_, &least_}) ranks.complete_bodies(*array, bodies);
+  if (!clumps.none())
+    for (auto* array : {&clumps_.springs, &clumps_.dashpots}) ranks.complete_bodies(*array, bodies);
+  Archive own;
+  for (std::size_t chunk = ranks.first(); chunk < ranks.last(); ++chunk) own(chunk_[chunk]);
+  Archive all(ranks.all(own.bytes()));
+  for (Chunk& chunk : chunk_) all(chunk);
+}
+
+void CriticalStep::renumber(const ContactTable& before, const ContactTable& now, const Ranks& ranks) {
+  const auto key = [](const ContactTable& table, std::uint32_t c) {
+    return std::uint64_t{table.a(c)} << 32 | table.b(c);
+  };
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> known;
+  now.each_candidate([&](std::size_t c) {
+    known.emplace_back(key(now, static_cast<std::uint32_t>(c)), static_cast<std::uint32_t>(c));
+  });
+  std::ranges::sort(known);
+  for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
+    if (!ranks.owns(chunk)) chunk_[chunk].near.clear();
+    for (std::uint32_t& c : chunk_[chunk].near)
+      c = std::ranges::lower_bound(known, std::pair(key(before, c), 0u))->second;
+  }
 }
 
 /// Demands of bodies with one contact, with a body like themselves.

@@ -7,6 +7,7 @@
 #include "bodies/bodies.hpp"
 #include "contact/contact_table.hpp"
 #include "contact/demand.hpp"
+#include "contact/halo.hpp"
 #include "contact/wall_contacts.hpp"
 #include "grit/contact/contact_law.hpp"
 
@@ -47,6 +48,8 @@ class CriticalStep {
     double near;     ///< m
     double ahead;    ///< distance of facets that bodies may reach before the next evaluation [m]
     double overlap;  ///< minimum overlap with a body of the same size, over its radius
+    const Halo& halo;
+    Ranks& ranks;
   };
   /// Evaluates all chunks.
   Demand find(const Instant& at, Team& team);
@@ -63,7 +66,11 @@ class CriticalStep {
   /// Evaluates chunks with such a change, or with new candidates at walls.
   Demand renew(const Instant& at, const Change& change, Team& team);
   /// Whether there are such chunks.
-  bool due(const WallContacts& walls, const Skins& skins, const Change& change) const;
+  bool due(const WallContacts& walls, const Skins& skins, const Change& change, Ranks& ranks) const;
+  /// Candidates of own chunks get the numbers that they have in another table; those of others are forgotten.
+  void renumber(const ContactTable& before, const ContactTable& now, const Ranks& ranks);
+  /// Completes the values of all ranks, whose candidates have numbers of one table.
+  void complete(const Clumps& clumps, std::size_t bodies, Ranks& ranks);
 
   /// Throws Error unless restored values fit so many bodies, and candidates of ContactTable.
   void check_restored(std::size_t bodies, std::size_t candidates) const;
@@ -98,6 +105,7 @@ class CriticalStep {
   /// The largest sum over the contacts of one body of √(r δ)/m, r the reduced radius and δ the overlap [m/kg]: Hertzian
   /// springs are stiffer in proportion.
   double stiffness(std::size_t chunk, const Instant& at) const;
+  /// Evaluates own chunks, and completes what other ranks need of them.
   Demand evaluate(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
   void evaluate_alone(std::size_t chunk, const Instant& at);
   /// `closings`: ContactTable::closings_across().

@@ -207,48 +207,68 @@ void NeighbourSearch::each_near(const Grid& grid, std::uint32_t begin, std::uint
 }
 
 void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const {
-  if (cell_.skewed()) find<true>(bodies, body, candidates);
-  else find<false>(bodies, body, candidates);
+  const std::size_t before = candidates.size();
+  const std::uint32_t own_clump = bodies.clumps.clump_of(body);
+  const auto find = [&]<bool skewed>() {
+    each_around<skewed>(bodies, body, [&](std::uint32_t other) {
+      if (other <= body || (own_clump != no_clump && bodies.clumps.clump_of(other) == own_clump)) return;
+      if (const auto found = pair<skewed>(bodies, body, other)) candidates.push_back(*found);
+    });
+  };
+  if (cell_.skewed()) find.template operator()<true>();
+  else find.template operator()<false>();
+  std::sort(candidates.begin() + static_cast<std::ptrdiff_t>(before), candidates.end(),
+            [](const Candidate& x, const Candidate& y) { return x.b < y.b; });
+}
+
+void NeighbourSearch::neighbours_below(const Bodies& bodies, std::uint32_t body, std::uint32_t below,
+                                       std::vector<Candidate>& candidates) const {
+  const std::uint32_t own_clump = bodies.clumps.clump_of(body);
+  const auto find = [&]<bool skewed>() {
+    each_around<skewed>(bodies, body, [&](std::uint32_t other) {
+      if (other >= below || (own_clump != no_clump && bodies.clumps.clump_of(other) == own_clump)) return;
+      if (const auto found = pair<skewed>(bodies, other, body)) candidates.push_back(*found);
+    });
+  };
+  if (cell_.skewed()) find.template operator()<true>();
+  else find.template operator()<false>();
 }
 
 template <bool skewed>
-void NeighbourSearch::find(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const {
-  const std::size_t before = candidates.size();
-  const Row* const position = bodies.position.data();
-  const Row own = position[body];
+std::optional<Candidate> NeighbourSearch::pair(const Bodies& bodies, std::uint32_t a, std::uint32_t b) const {
+  const Row &own = bodies.position[a], &other = bodies.position[b];
+  double d[3] = {other.x - own.x, other.y - own.y, other.z - own.z};
+  std::uint8_t image = 0;
+  if constexpr (skewed) {
+    std::array<int, 3> shift{};
+    for (int k = 2; k >= 0; --k) {
+      // Two bodies in the cell are no farther apart; half a period more is the side of an image.
+      const double most = k == 0 ? 2 : 1;
+      const double periods = std::clamp(std::nearbyint(d[k] * per_period_[k]), -most, most);
+      for (int j = 0; j <= k; ++j) d[j] -= periods * to_image_[static_cast<std::size_t>(k)][j];
+      shift[static_cast<std::size_t>(k)] = -static_cast<int>(periods);
+    }
+    image = image_with(shift);
+  } else if (any_periodic_) {
+    int place = 1;
+    for (int k = 0; k < 3; ++k, place *= 3) {
+      const double periods = std::nearbyint(d[k] * per_period_[k]);
+      d[k] -= periods * period_[k];
+      image = static_cast<std::uint8_t>(image + (periods > 0 ? 2 * place : periods < 0 ? place : 0));
+    }
+  }
+  const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  const double contact = own.w + other.w, near = contact + ((skins_.of_body(a) + skins_.reach()) + skins_.of_body(b));
+  if (!(square < near * near)) return {};
+  const double acts = contact + skins_.reach();
+  const float gap = square < acts * acts ? 0 : rounded_down(std::sqrt(square) - acts);
+  return Candidate{a, b, gap, image};
+}
+
+template <bool skewed, class Take>
+void NeighbourSearch::each_around(const Bodies& bodies, std::uint32_t body, Take take) const {
+  const Row own = bodies.position[body];
   const double centre[3] = {own.x, own.y, own.z}, skin = skins_.of_body(body) + skins_.reach();
-  const std::uint32_t own_clump = bodies.clumps.clump_of(body);
-  const auto take = [&](std::uint32_t other) {
-    if (other <= body || (own_clump != no_clump && bodies.clumps.clump_of(other) == own_clump)) return;
-    const Row& b = position[other];
-    double d[3] = {b.x - own.x, b.y - own.y, b.z - own.z};
-    std::uint8_t image = 0;
-    if constexpr (skewed) {
-      std::array<int, 3> shift{};
-      for (int k = 2; k >= 0; --k) {
-        // Two bodies in the cell are no farther apart; half a period more is the side of an image.
-        const double most = k == 0 ? 2 : 1;
-        const double periods = std::clamp(std::nearbyint(d[k] * per_period_[k]), -most, most);
-        for (int j = 0; j <= k; ++j) d[j] -= periods * to_image_[static_cast<std::size_t>(k)][j];
-        shift[static_cast<std::size_t>(k)] = -static_cast<int>(periods);
-      }
-      image = image_with(shift);
-    } else if (any_periodic_) {
-      int place = 1;
-      for (int k = 0; k < 3; ++k, place *= 3) {
-        const double periods = std::nearbyint(d[k] * per_period_[k]);
-        d[k] -= periods * period_[k];
-        image = static_cast<std::uint8_t>(image + (periods > 0 ? 2 * place : periods < 0 ? place : 0));
-      }
-    }
-    const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    const double contact = own.w + b.w, near = contact + (skin + skins_.of_body(other));
-    if (square < near * near) {
-      const double acts = contact + skins_.reach();
-      const float gap = square < acts * acts ? 0 : rounded_down(std::sqrt(square) - acts);
-      candidates.push_back({body, other, gap, image});
-    }
-  };
   for (const Grid& grid : grids_) {
     if (grid.body.empty()) continue;
     const double reach = own.w + skin + grid.largest_reach;
@@ -301,8 +321,6 @@ void NeighbourSearch::find(const Bodies& bodies, std::uint32_t body, std::vector
       }
     }
   }
-  std::sort(candidates.begin() + static_cast<std::ptrdiff_t>(before), candidates.end(),
-            [](const Candidate& x, const Candidate& y) { return x.b < y.b; });
 }
 
 }  // namespace grit

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,8 +54,13 @@ class NeighbourSearch {
   static double shortest_period(double radius, double skin, double reach) { return 4 * (radius + skin) + 2 * reach; }
   /// The largest reach of the law [m].
   double reach() const { return skins_.reach(); }
+  const Cell& cell() const { return cell_; }
+  const Skins& skins() const { return skins_; }
   /// Appends the candidates with a = `body`, in ascending order of b.
   void neighbours(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const;
+  /// Appends the candidates with b = `body` and a < `below`, in no order.
+  void neighbours_below(const Bodies& bodies, std::uint32_t body, std::uint32_t below,
+                        std::vector<Candidate>& candidates) const;
 
  private:
   struct Grid {
@@ -68,8 +74,12 @@ class NeighbourSearch {
     int index(int axis, double x) const;
     void place(const Bodies& bodies, const Skins& skins, Team& team);
   };
+  /// The candidate of a and b, if they are near enough.
   template <bool skewed>
-  void find(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const;
+  std::optional<Candidate> pair(const Bodies& bodies, std::uint32_t a, std::uint32_t b) const;
+  /// Calls take(other) for all bodies that may be near `body`.
+  template <bool skewed, class Take>
+  void each_around(const Bodies& bodies, std::uint32_t body, Take take) const;
   /// Calls use(n) for bodies n of `begin` … `end` of the grid whose centre, or an image of it, is nearer to `centre`
   /// than the sum of their reach and `reach`, and perhaps for some that are farther by a rounding error.
   template <class Use>

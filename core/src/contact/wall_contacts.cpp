@@ -64,7 +64,7 @@ void straighten(WallContact& contact, std::span<const WallSurface> walls) {
 
 void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> group,
                            std::span<const WallSurface> walls, const Skins& skins, std::span<const StateField> fields,
-                           std::optional<std::span<const std::uint32_t>> order, Team& team) {
+                           std::optional<std::span<const std::uint32_t>> order, Ranks& ranks, Team& team) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
   // Contact histories follow their bodies into other chunks.
@@ -97,7 +97,18 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> 
   }
 
   chunks_.resize(chunks_of(count));
-  team.each(chunks_.size(), [&](std::size_t c) { find_candidates(c, bodies, group, walls, skins); });
+  for (Chunk& chunk : chunks_) chunk.candidate.clear(), chunk.candidate_start.assign(walls.size() + 1, 0);
+  team.each(ranks.last() - ranks.first(),
+            [&](std::size_t k) { find_candidates(ranks.first() + k, bodies, group, walls, skins); });
+}
+
+void WallContacts::complete(Ranks& ranks) {
+  if (!ranks.several()) return;
+  Archive own;
+  // Bodies may have been appended since the last rebuild.
+  for (std::size_t c = ranks.first(); c < std::min(ranks.last(), chunks_.size()); ++c) own(chunks_[c], chunks_[c].row);
+  Archive all(ranks.all(own.bytes()));
+  for (Chunk& chunk : chunks_) all(chunk, chunk.row);
 }
 
 void WallContacts::find_candidates(std::size_t c, const Bodies& bodies, std::span<const std::uint16_t> group,
@@ -409,23 +420,37 @@ void WallContacts::grow(const Bodies& bodies, double factor) {
     }
 }
 
-void WallContacts::loads(std::span<WallLoad> loads) const {
+void WallContacts::loads(std::span<WallLoad> loads, Ranks& ranks) const {
   std::fill(loads.begin(), loads.end(), WallLoad{});
-  for (const Chunk& chunk : chunks_)
+  const auto add = [&](std::size_t w, const WallLoad& one) {
+    loads[w].force += one.force, loads[w].moment += one.moment;
+    loads[w].stiffness += one.stiffness, loads[w].contacts += one.contacts;
+    loads[w].spring += one.spring, loads[w].dashpot += one.dashpot;
+    loads[w].surface_force += one.surface_force, loads[w].surface_moment += one.surface_moment;
+    loads[w].turning_spring += one.turning_spring, loads[w].turning_dashpot += one.turning_dashpot;
+    loads[w].near += one.near;
+  };
+  struct Part {
+    std::size_t wall;
+    WallLoad load;
+  };
+  std::vector<Part> parts;  // in the order of chunks
+  for (std::size_t c = ranks.first(); c < ranks.last(); ++c) {
+    const Chunk& chunk = chunks_[c];
     for (std::size_t w = 0; w < chunk.load.size(); ++w) {
-      loads[w].force += chunk.load[w].force, loads[w].moment += chunk.load[w].moment;
-      loads[w].stiffness += chunk.load[w].stiffness, loads[w].contacts += chunk.load[w].contacts;
-      loads[w].spring += chunk.load[w].spring, loads[w].dashpot += chunk.load[w].dashpot;
-      loads[w].surface_force += chunk.load[w].surface_force, loads[w].surface_moment += chunk.load[w].surface_moment;
-      loads[w].turning_spring += chunk.load[w].turning_spring;
-      loads[w].turning_dashpot += chunk.load[w].turning_dashpot;
-      loads[w].near += chunk.candidate_start[w + 1] - chunk.candidate_start[w];
+      WallLoad one = chunk.load[w];
+      one.near = chunk.candidate_start[w + 1] - chunk.candidate_start[w];
+      if (!ranks.several()) add(w, one);
+      else if (one.near > 0) parts.push_back({w, one});
     }
+  }
+  if (ranks.several())
+    for (const Part& part : ranks.all(parts)) add(part.wall, part.load);
 }
 
 double WallContacts::force_ahead(std::size_t wall, const WallSurface& surface, const Pose& there, const Vec3& velocity,
                                  const ContactLaw& law, const Bodies& bodies, std::span<const std::uint16_t> group,
-                                 bool all) const {
+                                 bool all, Ranks& ranks) const {
   std::vector<Sphere> spheres;
   std::vector<SurfaceContact> found;
   WallSurface at = surface;
@@ -434,16 +459,19 @@ double WallContacts::force_ahead(std::size_t wall, const WallSurface& surface, c
     const Row& x = bodies.position[body];
     spheres.push_back({at.within(xyz(x)), x.w, body});
   };
-  if (all)
-    for (std::uint32_t body = 0; body < bodies.count(); ++body) {
-      if (surface.acts_on(group, body)) inspect(body);
-    }
-  else
-    for (const Chunk& chunk : chunks_)
+  for (std::size_t c = ranks.first(); c < ranks.last(); ++c) {
+    const Chunk& chunk = chunks_[c];
+    const ChunkRange range(c, bodies.count());
+    if (all)
+      for (std::size_t body = range.first; body < range.last; ++body) {
+        if (surface.acts_on(group, body)) inspect(static_cast<std::uint32_t>(body));
+      }
+    else
       for (std::uint32_t n = chunk.candidate_start[wall]; n < chunk.candidate_start[wall + 1]; ++n)
         inspect(chunk.candidate[n]);
+  }
   if (!spheres.empty()) surface.geometry->find_contacts(there, spheres, found);
-  double sum = 0;
+  std::vector<double> forces;
   for (const SurfaceContact& contact : found) {
     const PairSize size = at_wall(bodies, contact.body, contact.overlap);
     const Stiffness k = law.stiffness(size, bodies.material[contact.body], surface.material);
@@ -451,8 +479,10 @@ double WallContacts::force_ahead(std::size_t wall, const WallSurface& surface, c
                  closing = contact.normal.dot(xyz(bodies.velocity[contact.body]) - velocity);
     // Attraction is left out: contacts to come, which it would draw in, count with their repulsion alone, so that a
     // servo approaches more slowly. Where contacts in tension close, the force passes the target by their pull at most.
-    sum += std::max(0.0, k.normal * contact.overlap + dashpot * closing);
+    forces.push_back(std::max(0.0, k.normal * contact.overlap + dashpot * closing));
   }
+  double sum = 0;
+  for (const double force : ranks.all(forces)) sum += force;
   return sum;
 }
 

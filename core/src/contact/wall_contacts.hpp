@@ -14,6 +14,7 @@
 #include "grit/archive.hpp"
 #include "grit/contact/contact_law.hpp"
 #include "grit/geometry.hpp"
+#include "ranks/ranks.hpp"
 #include "threads/team.hpp"
 
 namespace grit {
@@ -52,6 +53,8 @@ struct WallSurface {
 
 template <>
 inline constexpr bool plain_numbers<WallContact> = true;
+template <>
+inline constexpr bool plain_numbers<ContactRow> = true;
 
 /// Sums of the contacts of one wall.
 struct WallLoad {
@@ -73,10 +76,13 @@ struct WallLoad {
 class WallContacts {
  public:
   /// Finds which bodies may come into contact with which walls while no displacement exceeds its skin. `group`: of each
-  /// body; may be empty if walls act on all groups. `order`: as in ContactTable::rebuild().
+  /// body; may be empty if walls act on all groups. `order`: as in ContactTable::rebuild(). Contacts of all ranks must
+  /// be complete.
   void rebuild(const Bodies& bodies, std::span<const std::uint16_t> group, std::span<const WallSurface> walls,
                const Skins& skins, std::span<const StateField> fields,
-               std::optional<std::span<const std::uint32_t>> order, Team& team);
+               std::optional<std::span<const std::uint32_t>> order, Ranks& ranks, Team& team);
+  /// Completes the contacts of all ranks, with their forces.
+  void complete(Ranks& ranks);
   /// Finds the candidates of one chunk again, of the same bodies and walls. Contacts and their histories stay.
   void find_candidates(std::size_t chunk, const Bodies& bodies, std::span<const std::uint16_t> group,
                        std::span<const WallSurface> walls, const Skins& skins);
@@ -94,13 +100,14 @@ class WallContacts {
                   std::span<const WallSurface> walls, double dt, bool again, BodySum* sum, Losses* losses);
   /// Bodies have grown by `factor` to their present size; increases the overlaps accordingly.
   void grow(const Bodies& bodies, double factor);
-  /// Loads on all walls, summed chunk by chunk.
-  void loads(std::span<WallLoad> loads) const;
+  /// Loads on all walls, summed chunk by chunk over all ranks.
+  void loads(std::span<WallLoad> loads, Ranks& ranks) const;
   /// Estimate of the normal force on a wall [N] at the pose `there` with `velocity` [m/s] and bodies as they are now:
   /// of springs, linear with their present stiffness, and of dashpots, without attraction. Considers `all` bodies, or
   /// only those that it may come into contact with before the next search.
   double force_ahead(std::size_t wall, const WallSurface& surface, const Pose& there, const Vec3& velocity,
-                     const ContactLaw& law, const Bodies& bodies, std::span<const std::uint16_t> group, bool all) const;
+                     const ContactLaw& law, const Bodies& bodies, std::span<const std::uint16_t> group, bool all,
+                     Ranks& ranks) const;
 
   struct Touching {
     const WallContact* contact;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "format/number.hpp"
+#include "kernel/completion.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/passed_bodies.hpp"
 
@@ -23,13 +24,14 @@ Vec3 own_velocity(const State& state, std::size_t body) {
 /// The largest speed over a body's own radius, relative to the mean flow [1/s]; infinite for a speed that is not
 /// finite.
 double rate_of_bodies(const State& state, Passes& passes) {
-  std::vector<double> rates(passes.chunks().size());
-  passes.team().each(rates.size(), [&](std::size_t chunk) {
+  const auto rates = passes.of_chunks([&](std::size_t chunk) {
     const ChunkRange range(chunk, state.bodies.count());
+    double largest = 0;
     for (std::size_t i = range.first; i < range.last; ++i) {
       const double rate = own_velocity(state, i).norm() / state.bodies.position[i].w;
-      if (!(rate <= rates[chunk])) rates[chunk] = std::isfinite(rate) ? rate : std::numeric_limits<double>::infinity();
+      if (!(rate <= largest)) largest = std::isfinite(rate) ? rate : std::numeric_limits<double>::infinity();
     }
+    return largest;
   });
   return rates.empty() ? 0 : *std::ranges::max_element(rates);
 }
@@ -71,8 +73,9 @@ void DisplacementBounds::foresee(const State& state, double dt, Passes& passes) 
     rate_ = std::max(rate_, approach_of(state, w, state.walls.expected_motion(w), gone, dt, passes).rate);
 }
 
-void DisplacementBounds::check_foreseen(const State& state, double dt, Passes& passes) {
+void DisplacementBounds::check_foreseen(State& state, double dt, Passes& passes) {
   if (dt * rate_ <= state.settings.guards.travel) return;
+  complete_bodies(state, passes);
   check_bodies(state, dt);
   const double gone = state.lists.skins().furthest();
   for (std::size_t w = 0; w < state.walls.size(); ++w)
@@ -94,7 +97,10 @@ void DisplacementBounds::advance(State& state, Passes& passes) {
   if (!finite || dt * rate_ > harmless(state)) rate_ = rate_of_bodies(state, passes);
   const double rate_of_bodies_alone = rate_;
   advance_walls(state, gone, passes);
-  if (!finite || dt * rate_of_bodies_alone > state.settings.guards.travel) check_bodies(state, dt);
+  if (!finite || dt * rate_of_bodies_alone > state.settings.guards.travel) {
+    complete_bodies(state, passes);
+    check_bodies(state, dt);
+  }
   last_approach_ = dt * std::max(2 * fastest, fastest + wall_closing_) + strained;
 }
 
@@ -105,7 +111,7 @@ void DisplacementBounds::advance_walls(State& state, double gone, Passes& passes
     const WallMotion motion = state.walls.motion(w);
     const Approach found = approach_of(state, w, motion, gone, dt, passes);
     check_wall(state, w, dt * found.rate);
-    wall_speed_ = std::max(wall_speed_, walls_.speed(state, w, motion, gone));
+    wall_speed_ = std::max(wall_speed_, walls_.speed(state, w, motion, gone, passes.ranks()));
     wall_closing_ = std::max(wall_closing_, found.speed), rate_ = std::max(rate_, found.rate);
   }
   state.lists.advance_walls(dt * wall_speed_);
@@ -113,13 +119,13 @@ void DisplacementBounds::advance_walls(State& state, double gone, Passes& passes
 
 Approach DisplacementBounds::approach_of(const State& state, std::size_t wall, const WallMotion& motion, double gone,
                                          double dt, Passes& passes) {
-  const double bound = walls_.normal_speed(state, wall, motion, gone);
+  const double bound = walls_.normal_speed(state, wall, motion, gone, passes.ranks());
   if (state.bodies.count() == 0) return {bound, 0};
   const double smallest = state.statistics.smallest_radius;
   if (dt * bound <= harmless(state) * smallest) return {bound, bound / smallest};
-  if (dt * bound > smallest && passes_bodies(state, wall, motion, dt, dt * bound, passes.team()))
+  if (dt * bound > smallest && passes_bodies(state, wall, motion, dt, dt * bound, passes))
     return {bound, bound / smallest};
-  return approach(state, wall, motion, dt, passes.team());
+  return approach(state, wall, motion, dt, passes);
 }
 
 }  // namespace grit

@@ -22,14 +22,14 @@ class DisplacementBounds {
   double displacement_rate() const { return rate_; }
 
   /// After a neighbour search, or one at walls only.
-  void rebuild(const State& state) { walls_.rebuild(state); }
+  void rebuild(const State& state, Passes& passes) { walls_.rebuild(state, passes.ranks()); }
   /// After a change of walls or of their motions.
   void reset_walls(std::size_t walls) { walls_.reset(walls); }
   /// Takes into account how fast bodies are, and how fast walls will be. The rate is exact where it matters in a step
   /// of `dt` [s].
   void foresee(const State& state, double dt, Passes& passes);
   /// Throws NumericsError if a body or wall moves too far in a step of `dt` [s], as foreseen.
-  void check_foreseen(const State& state, double dt, Passes& passes);
+  void check_foreseen(State& state, double dt, Passes& passes);
   /// Radii grew by up to `distance` [m] in this step.
   void grown(double distance) { grown_ = distance; }
   /// After bodies and walls have moved by one step. Throws NumericsError if a wall or body moved too far.

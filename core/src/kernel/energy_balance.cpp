@@ -127,10 +127,12 @@ double EnergyBalance::power_of_engines(std::size_t chunk) const {
 }
 
 double EnergyBalance::power_of_engines() const {
+  if (!state_.bodies.clumps.none()) static_cast<void>(world_.forces());  // completes those of other ranks
   return passes_.sum([this](std::size_t chunk) { return power_of_engines(chunk); });
 }
 
 double EnergyBalance::power_of_flow() const {
+  static_cast<void>(world_.velocities());  // completes those of other ranks
   const Bodies& bodies = state_.bodies;
   const Cell& cell = state_.cell.cell();
   double power = 0;
@@ -160,22 +162,23 @@ void EnergyBalance::find_crossing() {
   if (!state_.bodies.energies() || !state_.deforms()) return;
   const PhaseWatch watch = passes_.watch(StepPhase::contacts);
   const Bodies& bodies = state_.bodies;
-  passes_.team().each(passes_.chunks().size(), [&](std::size_t chunk) {
-    Mat3& crossing = passes_.chunks()[chunk].crossing = Mat3::Zero();
+  const auto parts = passes_.of_chunks([&](std::size_t chunk) {
+    Mat3 crossing = Mat3::Zero();
     const auto over = [](const auto& periods, const Row& force) -> Mat3 {
       return xyz(force) * Vec3(periods[0], periods[1], periods[2]).transpose();
     };
     state_.pairs.each_crossing(chunk, state_.instant(true), [&](std::size_t c, const ContactRow& row) {
       crossing += over(image_shift(state_.pairs.image(c)), row.force);
     });
-    if (bodies.clumps.none()) return;
+    if (bodies.clumps.none()) return crossing;
     // Spheres that re-entered the cell act on clumps on the other side.
     const ChunkRange range(chunk, bodies.count());
     for (std::size_t i = range.first; i < range.last; ++i)
       crossing -= over(bodies.clumps.of_body[i].periods, state_.sum[i].force);
+    return crossing;
   });
   crossing_ = Mat3::Zero();
-  for (const ChunkResult& chunk : passes_.chunks()) crossing_ += chunk.crossing;
+  for (const Mat3& crossing : parts) crossing_ += crossing;
 }
 
 void EnergyBalance::add_losses() {

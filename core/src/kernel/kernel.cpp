@@ -14,6 +14,7 @@
 #include "kernel/arrivals.hpp"
 #include "kernel/body_groups.hpp"
 #include "kernel/cell_servo.hpp"
+#include "kernel/completion.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/scaled_masses.hpp"
@@ -41,9 +42,10 @@ bool same(const Bounds& a, const Bounds& b) { return a.low == b.low && a.high ==
 
 }  // namespace
 
-Kernel::Kernel(const SceneDescription& scene, const Components& components, Prepared prepared, unsigned threads)
+Kernel::Kernel(const SceneDescription& scene, const Components& components, Prepared prepared, unsigned threads,
+               Communicator* ranks)
     : state_(cell_of(scene.domain)),
-      passes_(threads),
+      passes_(threads, ranks),
       view_(state_, passes_),
       balance_(state_, view_, passes_),
       stepper_(state_, passes_, view_, balance_, guard_),
@@ -130,6 +132,7 @@ void Kernel::change(const SceneDescription& scene, const Components& components)
 }
 
 void Kernel::apply(const SceneDescription& scene, const Components& components) {
+  complete_bodies(state_, passes_);
   const Settings before = state_.settings;
   balance_.book_elastic([&] { take_settings(scene, components); });
   const auto kinetic = [this] {
@@ -235,6 +238,7 @@ void Kernel::admit(const SceneDescription& scene, const Components& components) 
 
 void Kernel::let_in() {
   if (!inflow_.due(state_.time.time)) return;
+  complete_bodies(state_, passes_);
   Bodies entering = inflow_.enter(state_, view_);
   if (entering.count() == 0) return;
   scale_masses(entering, {}, state_.settings);
@@ -260,6 +264,12 @@ void Kernel::step_on() {
 std::string Kernel::fallen_behind() const {
   const std::string walls = state_.walls.fallen_behind(), cell = cell_servo_behind(state_, passes_);
   return walls + (walls.empty() || cell.empty() ? "" : "; ") + cell;
+}
+
+std::size_t Kernel::contact_count() const {
+  std::size_t count = 0;
+  for (const std::size_t of_rank : passes_.ranks().each(state_.pairs.touching_count())) count += of_rank;
+  return count;
 }
 
 double Kernel::kinetic_energy_ratio() const {
@@ -291,7 +301,10 @@ Model Kernel::model() const {
 void Kernel::save(Archive& archive) {
   archive.part("walls", 1);
   archive(state_.walls);
+  if (!passes_.ranks().several()) return serialize(archive);
+  ContactTable own = stepper_.join();
   serialize(archive);
+  stepper_.split(std::move(own));
 }
 
 void Kernel::restore(const SceneDescription& scene, const Components& components, Archive& archive) {

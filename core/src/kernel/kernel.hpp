@@ -21,7 +21,9 @@ class Kernel {
  public:
   /// Starts with the bodies of the scene and the state that its components request. Walls of a sample keep their poses
   /// by name.
-  Kernel(const SceneDescription& scene, const Components& components, Prepared prepared, unsigned threads);
+  /// `ranks`: processes that share the bodies; null if there is one.
+  Kernel(const SceneDescription& scene, const Components& components, Prepared prepared, unsigned threads,
+         Communicator* ranks = nullptr);
 
   /// Begins a stage with the settings of `scene`, which has the same materials, walls and bodies as the first. Inserts
   /// the bodies of this stage. Throws NumericsError if there is no room for them, or if they overlap others or walls by
@@ -53,6 +55,16 @@ class Kernel {
   std::vector<std::string> blocked_streams() const { return inflow_.blocked(); }
   /// Whether a component has asked for the energy balance, so that it is kept: see World::energies().
   bool keeps_energy_balance() const { return balance_.is_kept(); }
+  bool is_first_rank() const { return passes_.ranks().rank() == 0; }
+  unsigned ranks() const { return passes_.ranks().count(); }
+  /// Whether any rank says so; all must call this.
+  bool any_rank(bool own) { return passes_.ranks().any(own); }
+  /// See Ranks::Alone.
+  Ranks::Alone alone() const { return Ranks::Alone(passes_.ranks()); }
+  /// Completes what the world shows on this rank; all must call this.
+  void complete_world() const { view_.complete(); }
+  /// Number of pairs in contact, of all ranks.
+  std::size_t contact_count() const;
   double body_steps() const { return stepper_.body_steps(); }
   unsigned threads() const { return passes_.threads(); }
   std::vector<PhaseTime> phases() const { return passes_.phases(); }

@@ -30,11 +30,15 @@ struct SkinWidths {
 
 }  // namespace
 
-bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell) {
+bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell, Ranks& ranks) {
   if (requested_) return true;
   const auto used_up = [&](std::size_t chunk) {
     return skins_.gone(chunk) + 0.5 * strain_travel_ > skins_.of_chunk(chunk);
   };
+  std::vector<std::size_t> chunks;
+  for (std::size_t chunk = 0; chunk < chunks_of(bodies.count()); ++chunk)
+    if (used_up(chunk)) chunks.push_back(chunk);
+  if (chunks.empty()) return false;
   // The sum of the largest speeds is a bound; the true distance is often far less. In a cell that deforms it is the
   // distance relative to the mean flow.
   Vec3 stretch = Vec3::Ones(), from = Vec3::Zero(), to = Vec3::Zero();
@@ -51,8 +55,7 @@ bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell) {
   if (skewed)
     deformed = DeformingCell::columns(cell.lengths(), cell.cell().tilt) *
                DeformingCell::columns(reference_cell_.high - reference_cell_.low, reference_cell_.tilt).inverse();
-  for (std::size_t chunk = 0; chunk < chunks_of(bodies.count()); ++chunk) {
-    if (!used_up(chunk)) continue;
+  const auto measured = [&](std::size_t chunk) {
     const ChunkRange range(chunk, bodies.count());
     double largest = 0;
     for (std::size_t i = range.first; i < range.last; ++i) {
@@ -61,7 +64,17 @@ bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell) {
           skewed ? Vec3(x - to - deformed * (before - from)) : Vec3(x - to - stretch.cwiseProduct(before - from));
       largest = std::max(largest, away.squaredNorm());
     }
-    skins_.found(chunk, std::sqrt(largest));
+    return std::sqrt(largest);
+  };
+  std::vector<double> ways;
+  if (ranks.several()) {
+    ways.resize(chunks_of(bodies.count()));
+    for (const std::size_t chunk : chunks)
+      if (ranks.owns(chunk)) ways[chunk] = measured(chunk);
+    ranks.complete(ways);
+  }
+  for (const std::size_t chunk : chunks) {
+    skins_.found(chunk, ranks.several() ? ways[chunk] : measured(chunk));
     if (skins_.gone(chunk) + 0.5 * strain_travel_ > 0.95 * skins_.of_chunk(chunk)) return true;
   }
   return false;

@@ -30,7 +30,7 @@ class NeighbourLists {
   void expect_reaches(const std::vector<double>& reaches) { requested_ = requested_ || reaches != reaches_; }
   /// Whether a body may have used up its skin. If the sum of maximum speeds does not exclude it, displacements since
   /// the last rebuild are measured.
-  bool due(const Bodies& bodies, const DeformingCell& cell);
+  bool due(const Bodies& bodies, const DeformingCell& cell, Ranks& ranks);
   /// Whether a wall may have used up its skin; then only candidates at walls are found again.
   bool due_at_walls() const { return skins_.walls_gone() > skins_.of_walls(); }
   /// Whether this rebuild should also sort bodies in space.

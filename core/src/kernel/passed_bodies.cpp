@@ -9,14 +9,14 @@
 namespace grit {
 
 bool passes_bodies(const State& state, std::size_t wall, const WallMotion& motion, double dt, double distance,
-                   Team& team) {
+                   Passes& passes) {
   // At places along the way that are a radius apart, so that none is passed in between.
   constexpr double most_places = 1000;
   const double places = std::ceil(distance / state.statistics.smallest_radius);
   if (!(places <= most_places)) return true;
   const WallSurface& surface = state.surfaces[wall];
-  std::vector<char> passed(chunks_of(state.bodies.count()));
-  team.each(passed.size(), [&](std::size_t chunk) {
+  const auto passed = passes.of_chunks([&](std::size_t chunk) {
+    char some = 0;
     const ChunkRange range(chunk, state.bodies.count());
     std::vector<Sphere> spheres;
     for (std::size_t i = range.first; i < range.last; ++i) {
@@ -26,16 +26,17 @@ bool passes_bodies(const State& state, std::size_t wall, const WallMotion& motio
     }
     std::map<std::uint32_t, double> before;  // overlaps by body [m]
     std::vector<SurfaceContact> found;
-    for (double place = 0; place <= places && passed[chunk] == 0; ++place) {
+    for (double place = 0; place <= places && some == 0; ++place) {
       found.clear();
       const Pose pose = moved(state.walls.pose(wall), motion, place / places * dt);
       if (!spheres.empty()) surface.geometry->find_contacts(pose, spheres, found);
       for (const SurfaceContact& contact : found) {
         const double allowed = state.settings.guards.travel * state.bodies.position[contact.body].w;
         if (place == 0) before[contact.body] = std::max(before[contact.body], contact.overlap);
-        else if (contact.overlap > before[contact.body] + allowed) passed[chunk] = 1;
+        else if (contact.overlap > before[contact.body] + allowed) some = 1;
       }
     }
+    return some;
   });
   return std::ranges::find(passed, 1) != passed.end();
 }

@@ -2,8 +2,8 @@
 
 namespace grit {
 
-Passes::Passes(unsigned threads)
-    : team_(threads), phases_{{"search", 0}, {"contacts", 0}, {"walls", 0}, {"motion", 0}} {}
+Passes::Passes(unsigned threads, Communicator* ranks)
+    : ranks_(ranks), team_(threads), phases_{{"search", 0}, {"contacts", 0}, {"walls", 0}, {"motion", 0}} {}
 
 std::vector<PhaseTime> Passes::phases() const {
   std::array<double, step_phases> timed{};
@@ -15,6 +15,36 @@ std::vector<PhaseTime> Passes::phases() const {
     phases[phase].seconds += passes_.seconds * timed[phase] / all,
         phases[phase].parallel += passes_.parallel * timed[phase] / all;
   return phases;
+}
+
+void Passes::divide() {
+  if (!ranks_.several()) return;
+  std::vector<std::array<double, step_phases>> seconds;
+  for (const ChunkResult& chunk : chunks_) seconds.push_back(chunk.seconds);
+  ranks_.complete(seconds);
+  std::vector<double> weights;
+  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
+    chunks_[chunk].seconds = seconds[chunk];
+    weights.push_back(std::accumulate(seconds[chunk].begin(), seconds[chunk].end(), 0.0));
+  }
+  ranks_.divide(weights);
+}
+
+void Passes::complete_results(bool energies) {
+  if (!ranks_.several()) return;
+  if (energies) return ranks_.complete(chunks_);
+  struct Result {
+    double overlap, speed;
+    bool finite;
+  };
+  std::vector<Result> results;
+  for (const ChunkResult& chunk : chunks_)
+    results.push_back({chunk.overlap, chunk.motion.largest_speed, chunk.motion.finite});
+  ranks_.complete(results);
+  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
+    chunks_[chunk].overlap = results[chunk].overlap;
+    chunks_[chunk].motion.largest_speed = results[chunk].speed, chunks_[chunk].motion.finite = results[chunk].finite;
+  }
 }
 
 void Passes::serialize(Archive& archive, std::size_t bodies) {

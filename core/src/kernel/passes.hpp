@@ -9,6 +9,7 @@
 #include "grit/contact/batch.hpp"
 #include "kernel/model.hpp"
 #include "motion/motion.hpp"
+#include "ranks/ranks.hpp"
 #include "threads/chunks.hpp"
 #include "threads/stopwatch.hpp"
 #include "threads/team.hpp"
@@ -23,7 +24,6 @@ struct alignas(64) ChunkResult {
   double overlap = 0;  ///< largest, over a radius
   Losses losses;
   Motion motion, clumps;
-  Mat3 crossing = Mat3::Zero();  ///< see EnergyBalance
   bool moved = false;
   std::array<double, step_phases> seconds{};
 
@@ -48,30 +48,57 @@ class PhaseWatch {
 
 class Passes {
  public:
-  explicit Passes(unsigned threads);
+  explicit Passes(unsigned threads, Communicator* ranks = nullptr);
 
   Team& team() { return team_; }
+  Ranks& ranks() { return ranks_; }
+  const Ranks& ranks() const { return ranks_; }
   unsigned threads() const { return team_.threads(); }
   std::vector<ChunkResult>& chunks() { return chunks_; }
   const std::vector<ChunkResult>& chunks() const { return chunks_; }
-  void resize(std::size_t bodies) { chunks_.resize(chunks_of(bodies)); }
+  void resize(std::size_t bodies) { chunks_.resize(chunks_of(bodies)), ranks_.resize(chunks_.size()); }
+  /// Divides the chunks among the ranks by their computing time so far.
+  void divide();
 
-  /// Shares work(chunk, laps) among the threads; times one chunk in eight.
+  /// Shares work(chunk, laps) among the threads, for some chunks; times one in eight.
+  template <class Work>
+  void each(std::uint64_t step, std::span<const std::uint32_t> chunks, Work work) {
+    each_of(
+        step, chunks.size(), [chunks](std::size_t k) { return std::size_t{chunks[k]}; }, work);
+  }
+  /// The same for own chunks.
   template <class Work>
   void each(std::uint64_t step, Work work) {
-    const PhaseWatch watch(passes_, team_);
-    team_.each(chunks_.size(), [&](std::size_t chunk) {
-      Laps laps((chunk + step) % timed_every == 0);
-      work(chunk, laps);
-    });
+    each_of(
+        step, ranks_.last() - ranks_.first(), [first = ranks_.first()](std::size_t k) { return first + k; }, work);
   }
-  /// part(chunk), evaluated by all threads and summed in the order of the chunks.
+  /// The same for all chunks, on every rank.
+  template <class Work>
+  void each_on_all_ranks(std::uint64_t step, Work work) {
+    each_of(
+        step, chunks_.size(), [](std::size_t k) { return k; }, work);
+  }
+  /// work(chunk) for own chunks, without measuring time.
+  template <class Work>
+  void each_own(Work work) {
+    team_.each(ranks_.last() - ranks_.first(), [&](std::size_t k) { work(ranks_.first() + k); });
+  }
+  /// part(chunk) of all chunks, evaluated by the threads of their ranks.
+  template <class Part>
+  auto of_chunks(Part part) {
+    std::vector<decltype(part(std::size_t{0}))> found(chunks_.size());
+    each_own([&](std::size_t chunk) { found[chunk] = part(chunk); });
+    ranks_.complete(found);
+    return found;
+  }
+  /// These summed in the order of the chunks.
   template <class Part>
   auto sum(Part part) {
-    std::vector<decltype(part(std::size_t{0}))> found(chunks_.size());
-    team_.each(found.size(), [&](std::size_t chunk) { found[chunk] = part(chunk); });
+    const auto found = of_chunks(part);
     return std::accumulate(found.begin(), found.end(), decltype(part(std::size_t{0})){});
   }
+  /// Completes the results of chunks. `energies`: whether more than overlaps and speeds is needed.
+  void complete_results(bool energies);
   /// Measures a phase outside each().
   PhaseWatch watch(StepPhase phase) { return {phases_[static_cast<std::size_t>(phase)], team_}; }
   /// Times of all phases; that of each() is divided in proportion to the timed chunks.
@@ -83,6 +110,17 @@ class Passes {
   // Reading the clock takes about 30 ns, a chunk about 20 µs.
   static constexpr std::uint64_t timed_every = 8;
 
+  template <class Chunk, class Work>
+  void each_of(std::uint64_t step, std::size_t count, Chunk chunk_of, Work work) {
+    const PhaseWatch watch(passes_, team_);
+    team_.each(count, [&](std::size_t k) {
+      const std::size_t chunk = chunk_of(k);
+      Laps laps((chunk + step) % timed_every == 0);
+      work(chunk, laps);
+    });
+  }
+
+  Ranks ranks_;
   Team team_;
   std::vector<ChunkResult> chunks_;
   std::vector<PhaseTime> phases_;

@@ -7,6 +7,7 @@
 
 #include "bodies/bodies.hpp"
 #include "contact/contact_table.hpp"
+#include "contact/halo.hpp"
 #include "contact/wall_contacts.hpp"
 #include "domain/deforming_cell.hpp"
 #include "domain/population_statistics.hpp"
@@ -33,12 +34,17 @@ struct State {
   double discharged_mass = 0;         ///< of these [kg]
   NeighbourLists lists;
   ContactTable pairs;
+  Halo halo;
   WallContacts wall_contacts;
   Walls walls;
   std::vector<WallSurface> surfaces;           ///< of the walls, for the contact pass
   LargeArray<BodySum> sum;                     ///< contact forces and moments by body
   std::vector<Row> added_force, added_moment;  ///< by engines; empty without any
   double overlap = 0;                          ///< largest over a radius, at the last evaluation
+  /// Whether a rank has values of all bodies, or only of its own and those near them; see completion.hpp.
+  struct {
+    bool bodies = true, sums = true;
+  } complete;
 
   /// Input of the contact pass; `again` if this instant has been evaluated before.
   ContactTable::Instant instant(bool again) const {

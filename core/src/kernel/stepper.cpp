@@ -11,6 +11,7 @@
 #include "domain/boundaries.hpp"
 #include "kernel/arrivals.hpp"
 #include "kernel/body_groups.hpp"
+#include "kernel/completion.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/periodic_walls.hpp"
@@ -52,6 +53,8 @@ void Stepper::mark_removed(std::vector<bool>& leaves) const {
 void Stepper::rebuild() {
   check_periods(state_);
   repeat_walls(state_);
+  complete_bodies(state_, passes_);
+  state_.wall_contacts.complete(passes_.ranks());
   Bodies& bodies = state_.bodies;
   DeformingCell& cell = state_.cell;
   if (const Eigen::Matrix3i moved = cell.reduce_tilt(); !moved.isIdentity()) {
@@ -89,13 +92,16 @@ void Stepper::rebuild() {
     find_groups(state_);
     state_.sum.resize(bodies.count() + 1), passes_.resize(bodies.count());
   }
+  passes_.divide();
   state_.lists.rebuild(bodies, cell, state_.statistics, state_.reaches(), state_.time.dt, bounds_.wall_speed(),
                        passes_);
-  state_.pairs.rebuild(bodies, state_.lists.search(), cell.periodic(), state_.settings.fields, order, passes_.team());
+  state_.pairs.rebuild(bodies, state_.lists.search(), cell.periodic(), state_.settings.fields, order, passes_.ranks(),
+                       passes_.team());
+  state_.halo.build(state_.pairs, passes_.ranks());
   readiness_.build(state_.pairs.reached());
   state_.wall_contacts.rebuild(bodies, state_.group, state_.surfaces, state_.lists.skins(), state_.settings.fields,
-                               order, passes_.team());
-  bounds_.rebuild(state_);
+                               order, passes_.ranks(), passes_.team());
+  bounds_.rebuild(state_, passes_);
   arrivals_.clear();
   view_.invalidate();  // engines may have read bodies in their former order
   time_step_.set(state_, view_, bounds_, passes_);
@@ -104,10 +110,10 @@ void Stepper::rebuild() {
 void Stepper::search_at_walls() {
   repeat_walls(state_);
   state_.lists.begin_search_at_walls(state_.cell, state_.statistics, state_.time.dt, bounds_.wall_speed());
-  passes_.team().each(passes_.chunks().size(), [&](std::size_t chunk) {
+  passes_.each_own([&](std::size_t chunk) {
     state_.wall_contacts.find_candidates(chunk, state_.bodies, state_.group, state_.surfaces, state_.lists.skins());
   });
-  bounds_.rebuild(state_);
+  bounds_.rebuild(state_, passes_);
 }
 
 bool Stepper::prepare() {
@@ -116,7 +122,7 @@ bool Stepper::prepare() {
   update_surfaces();
   {
     const PhaseWatch watch = passes_.watch(StepPhase::search);
-    if (state_.lists.due(state_.bodies, state_.cell)) {
+    if (state_.lists.due(state_.bodies, state_.cell, passes_.ranks())) {
       rebuild();
     } else {
       if (state_.lists.due_at_walls()) search_at_walls();
@@ -126,6 +132,7 @@ bool Stepper::prepare() {
   // Contact history advances once per step, even if forces are evaluated again at the start of a stage.
   const bool again = forces_step_ == state_.time.step;
   forces_step_ = state_.time.step;
+  state_.complete.sums = !passes_.ranks().several();
   return again;
 }
 
@@ -133,6 +140,10 @@ void Stepper::evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps) 
   ChunkResult& own = passes_.chunks()[chunk];
   const ChunkRange range(chunk, state_.bodies.count());
   std::fill(sum + range.first, sum + range.last, BodySum{});
+  if (!passes_.ranks().owns(chunk)) {
+    state_.pairs.evaluate(chunk, state_.instant(again), sum, nullptr);
+    return laps(own.time_of(StepPhase::contacts));
+  }
   own.losses = {};
   Losses* const losses = balance_.is_kept() ? &own.losses : nullptr;
   own.overlap = state_.pairs.evaluate(chunk, state_.instant(again), sum, losses);
@@ -150,7 +161,8 @@ void Stepper::move(std::size_t chunk, const BodySum* sum, const MotionStep& step
 
 void Stepper::sum_forces(bool again) {
   BodySum* const sum = state_.sum.data();
-  passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) { evaluate(chunk, again, sum, laps); });
+  passes_.each(state_.time.step, state_.pairs.evaluated(),
+               [&](std::size_t chunk, Laps& laps) { evaluate(chunk, again, sum, laps); });
   passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
     state_.pairs.gather(chunk, sum);
     laps(passes_.chunks()[chunk].time_of(StepPhase::motion));
@@ -197,8 +209,9 @@ void Stepper::add_forces_of_engines() {
 }
 
 void Stepper::take_loads() {
+  passes_.complete_results(balance_.is_kept());
   if (!state_.surfaces.empty()) {
-    state_.wall_contacts.loads(loads_);
+    state_.wall_contacts.loads(loads_, passes_.ranks());
     state_.walls.clear_forces();
     for (std::size_t w = 0; w < loads_.size(); ++w) state_.walls.add(w, loads_[w]);
   }
@@ -258,7 +271,8 @@ void Stepper::grow() {
 void Stepper::move_clumps_of_chunks(const MotionStep& step) {
   const std::size_t clumps = state_.bodies.clumps.clump.size();
   if (clumps == 0) return;
-  passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
+  complete_sums(state_, passes_);
+  passes_.each_on_all_ranks(state_.time.step, [&](std::size_t chunk, Laps& laps) {
     const ChunkRange range(chunk, clumps);
     ChunkResult& own = passes_.chunks()[chunk];
     own.clumps = move_clumps(range.first, range.last, state_.bodies, state_.sum.data(), step);
@@ -288,6 +302,8 @@ void Stepper::advance() {
     move(chunk, state_.sum.data(), step);
     laps(passes_.chunks()[chunk].time_of(StepPhase::motion));
   });
+  bodies_moved();
+  passes_.complete_results(balance_.is_kept());
   balance_.after_motion(step);
   and_show_forces([this] { end_step(); });
 }
@@ -316,7 +332,7 @@ void Stepper::step_on() {
     state_.pairs.gather(chunk, sum);
     move(chunk, sum, step);
   };
-  passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
+  passes_.each(state_.time.step, state_.pairs.evaluated(), [&](std::size_t chunk, Laps& laps) {
     // Sums of a chunk that moves at once stay in the cache. The pointer is offset so that it is indexed by body: its
     // start lies before the array, but only valid elements are accessed.
     alignas(64) thread_local std::array<BodySum, chunk_bodies> here;
@@ -325,19 +341,28 @@ void Stepper::step_on() {
     BodySum* const own = reinterpret_cast<BodySum*>(of_body_0);
     evaluate(chunk, again, own, laps);
     ChunkResult& result = passes_.chunks()[chunk];
-    result.moved = readiness_.evaluated(chunk);
+    const bool ready = readiness_.evaluated(chunk);
+    if (!passes_.ranks().owns(chunk)) return;
+    result.moved = ready;
     if (result.moved) gather_and_move(chunk, own);
     else std::copy(own + range.first, own + range.last, state_.sum.data() + range.first);
     laps(result.time_of(StepPhase::motion));
   });
   late_.clear();
-  for (std::size_t chunk = 0; chunk < passes_.chunks().size(); ++chunk)
+  for (std::size_t chunk = passes_.ranks().first(); chunk < passes_.ranks().last(); ++chunk)
     if (!passes_.chunks()[chunk].moved) late_.push_back(chunk);
   if (!late_.empty()) {
     const PhaseWatch watch = passes_.watch(StepPhase::motion);
     passes_.team().each(late_.size(), [&](std::size_t k) { gather_and_move(late_[k], state_.sum.data()); });
   }
+  bodies_moved();
   and_show_forces([this] { take_loads(), end_step(); });
+}
+
+void Stepper::bodies_moved() {
+  if (!passes_.ranks().several()) return;
+  state_.complete.bodies = false;
+  state_.halo.exchange(state_.bodies, passes_.ranks());
 }
 
 void Stepper::show_forces() {
@@ -351,6 +376,7 @@ void Stepper::show_forces() {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     const Row row{unknown, unknown, unknown, unknown};
     state_.sum.assign(state_.sum.size(), {row, row});
+    state_.complete.sums = true;
   }
   view_.invalidate();
 }
@@ -363,7 +389,7 @@ void Stepper::end_step() {
     const Skins& skins = state_.lists.skins();
     const bool beyond = skins.walls_gone() + distance > skins.of_walls();
     return state_.wall_contacts.force_ahead(wall, state_.surfaces[wall], there, velocity, *state_.settings.law,
-                                            state_.bodies, state_.group, beyond);
+                                            state_.bodies, state_.group, beyond, passes_.ranks());
   });
   const double work = work_at_start + 0.5 * dt * balance_.power_of_walls();
   guard_.add_work_of_walls(work);
@@ -381,8 +407,32 @@ void Stepper::end_step() {
 void Stepper::restored() {
   time_step_.check_restored(state_);
   bounds_.check_restored(state_.walls.size());
+  share();
   repeat_walls(state_);
   readiness_.build(state_.pairs.reached());
+}
+
+void Stepper::share() {
+  if (!passes_.ranks().several()) return;
+  passes_.divide();
+  split(state_.pairs.part(passes_.ranks()));
+  state_.halo.build(state_.pairs, passes_.ranks());
+}
+
+void Stepper::split(ContactTable own) {
+  time_step_.renumber(state_.pairs, own, passes_.ranks());
+  state_.pairs = std::move(own);
+}
+
+ContactTable Stepper::join() {
+  complete_bodies(state_, passes_);
+  passes_.complete_results(true);
+  state_.wall_contacts.complete(passes_.ranks());
+  ContactTable whole = state_.pairs.joined(passes_.ranks());
+  time_step_.renumber(state_.pairs, whole, passes_.ranks());
+  time_step_.complete(state_.bodies, passes_.ranks());
+  std::swap(whole, state_.pairs);
+  return whole;
 }
 
 void Stepper::serialize(Archive& archive) { archive(time_step_, bounds_, cell_servo_, forces_step_, body_steps_); }

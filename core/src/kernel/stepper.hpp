@@ -43,6 +43,9 @@ class Stepper {
   void serialize(Archive& archive);
   /// After the state has been restored. Throws Error unless this fits it.
   void restored();
+  /// Makes the state whole, for saving, until split() takes back the own pairs, which this returns.
+  ContactTable join();
+  void split(ContactTable own);
 
  private:
   /// Operations before contacts. Returns whether this instant has been evaluated before.
@@ -56,6 +59,10 @@ class Stepper {
   /// Contacts of one chunk with others and with walls.
   void evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps);
   void move(std::size_t chunk, const BodySum* sum, const MotionStep& step);
+  /// Updates bodies of other ranks near own ones.
+  void bodies_moved();
+  /// Of a whole state, keeps what this rank needs.
+  void share();
   void sum_forces(bool again);
   void check_finite(const ActingEngine& one, std::span<const Row> force, std::span<const Row> moment) const;
   void add_forces_of_engines();

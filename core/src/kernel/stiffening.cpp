@@ -82,14 +82,18 @@ bool Stiffening::may_exceed(const State& state, const DisplacementBounds& bounds
   return exceeds(state.overlap + bounds.last_approach() / state.statistics.smallest_radius, state, bounds);
 }
 
-void Stiffening::expect(const State& state, const DisplacementBounds& bounds) {
+void Stiffening::expect(const State& state, const DisplacementBounds& bounds, Passes& passes) {
   if (!is_there()) return;
   // New bodies with a velocity have not moved yet.
-  double fastest = 0;
-  for (std::size_t i = 0; i < state.bodies.count(); ++i)
-    fastest = std::max(
-        fastest, (xyz(state.bodies.velocity[i]) - state.cell.mean_flow(xyz(state.bodies.position[i]))).squaredNorm());
-  fastest = std::sqrt(fastest);
+  const auto speeds = passes.of_chunks([&](std::size_t chunk) {
+    const ChunkRange range(chunk, state.bodies.count());
+    double fastest = 0;
+    for (std::size_t i = range.first; i < range.last; ++i)
+      fastest = std::max(
+          fastest, (xyz(state.bodies.velocity[i]) - state.cell.mean_flow(xyz(state.bodies.position[i]))).squaredNorm());
+    return fastest;
+  });
+  const double fastest = std::sqrt(speeds.empty() ? 0 : *std::ranges::max_element(speeds));
   const double speed =
       std::max({2 * fastest, fastest + bounds.wall_closing_speed(), bounds.closing_speed(state.time.previous_dt)});
   double overlap = std::max(state.overlap, linear_until_);

@@ -20,7 +20,7 @@ class Stiffening {
   /// does not depend on the reason of the evaluation.
   bool may_exceed(const State& state, const DisplacementBounds& bounds) const;
   /// Sets the expected overlap.
-  void expect(const State& state, const DisplacementBounds& bounds);
+  void expect(const State& state, const DisplacementBounds& bounds, Passes& passes);
   /// The least overlap over a radius at which a packing may need a shorter step; infinite if springs do not stiffen.
   double least_overlap() const;
   /// Expected maximum overlap over a radius; 0 if springs do not stiffen.

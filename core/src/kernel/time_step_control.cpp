@@ -52,7 +52,7 @@ void check_advance(const State& state) {
 
 }  // namespace
 
-CriticalStep::Instant TimeStepControl::near_contacts(const State& state) const {
+CriticalStep::Instant TimeStepControl::near_contacts(const State& state, Passes& passes) const {
   return {.bodies = state.bodies,
           .pairs = state.pairs,
           .walls = state.wall_contacts,
@@ -62,14 +62,16 @@ CriticalStep::Instant TimeStepControl::near_contacts(const State& state) const {
           .skins = state.lists.skins(),
           .near = contact_distance * state.statistics.mean_diameter,
           .ahead = 2 * renew_distance * state.statistics.mean_diameter,  // of a body and a wall
-          .overlap = stiffening_.expected_overlap()};
+          .overlap = stiffening_.expected_overlap(),
+          .halo = state.halo,
+          .ranks = passes.ranks()};
 }
 
 void TimeStepControl::set(State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
   engines_ = demand_of_engines(state, world);
-  stiffening_.expect(state, bounds);
+  stiffening_.expect(state, bounds, passes);
   // Without bodies the step is that of the groups that will appear.
-  const Demand found = critical_.find(near_contacts(state), passes.team());
+  const Demand found = critical_.find(near_contacts(state, passes), passes.team());
   const Demand contacts = state.bodies.count() > 0 ? found : state.settings.of_groups;
   const double stable = stable_step(contacts, state);
   bounds.foresee(state, std::isfinite(stable) ? stable : state.time.dt, passes);
@@ -86,8 +88,8 @@ void TimeStepControl::follow(State& state, const World& world, DisplacementBound
   const bool unchecked = settings.time_step.value && settings.time_step.allow_unstable;
   if (requested_) set(state, world, bounds, passes);
   // Contacts form long before the next rebuild.
-  else if (!unchecked && critical_.due(state.wall_contacts, state.lists.skins(), change))
-    choose(critical_.renew(near_contacts(state), change, passes.team()), state, bounds);
+  else if (!unchecked && critical_.due(state.wall_contacts, state.lists.skins(), change, passes.ranks()))
+    choose(critical_.renew(near_contacts(state, passes), change, passes.team()), state, bounds);
   else if (!settings.time_step.value &&
            state.time.dt * bounds.displacement_rate() > max_displacement(settings.time_step, settings.guards))
     choose(contacts_, state, bounds);

@@ -34,6 +34,11 @@ class TimeStepControl {
   /// free walls have stiffer contacts.
   void react(bool may_have_stiffened, State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
 
+  /// Between a state that ranks share and a whole one, with the pairs of all; see CriticalStep.
+  void renumber(const ContactTable& before, const ContactTable& now, const Ranks& ranks) {
+    critical_.renumber(before, now, ranks);
+  }
+  void complete(const Bodies& bodies, Ranks& ranks) { critical_.complete(bodies.clumps, bodies.count(), ranks); }
   /// Throws Error unless what was restored fits the state.
   void check_restored(const State& state) const {
     critical_.check_restored(state.bodies.count(), state.pairs.candidates());
@@ -43,7 +48,7 @@ class TimeStepControl {
   }
 
  private:
-  CriticalStep::Instant near_contacts(const State& state) const;
+  CriticalStep::Instant near_contacts(const State& state, Passes& passes) const;
   double critical_step(const Demand& contacts, const State& state) const;
   /// The step that stability and impacts allow, or the prescribed one.
   double stable_step(const Demand& contacts, const State& state) const;

@@ -18,11 +18,11 @@ class WallSpeeds {
   /// After a change of walls or of their motions.
   void reset(std::size_t walls) { arms_.assign(walls, {}); }
   /// After a neighbour search, or one at walls only.
-  void rebuild(const State& state);
+  void rebuild(const State& state, Ranks& ranks);
   /// Speed in any direction [m/s]. `gone`: upper bound of the displacement of bodies since the neighbour search [m].
-  double speed(const State& state, std::size_t wall, const WallMotion& motion, double gone);
+  double speed(const State& state, std::size_t wall, const WallMotion& motion, double gone, Ranks& ranks);
   /// Speed along the normal of the surface [m/s]: a flat wall may move in its own plane at any speed.
-  double normal_speed(const State& state, std::size_t wall, const WallMotion& motion, double gone);
+  double normal_speed(const State& state, std::size_t wall, const WallMotion& motion, double gone, Ranks& ranks);
 
   /// Throws Error unless restored speeds are of so many walls.
   void check_restored(std::size_t walls) const { expect_restored(arms_.size() == walls, "speeds are of other walls"); }
@@ -35,7 +35,7 @@ class WallSpeeds {
 
     void serialize(Archive& archive) { archive(axis, length); }
   };
-  double turning(const State& state, std::size_t wall, const Vec3& spin, double gone);
+  double turning(const State& state, std::size_t wall, const Vec3& spin, double gone, Ranks& ranks);
 
   std::vector<Arm> arms_;  // by wall
 };
@@ -47,6 +47,6 @@ struct Approach {
 };
 /// Measured as the change of overlaps in a step of `dt` [s], with bodies at rest and larger by their skins. A surface
 /// that slides along itself, such as a drum that spins, does not approach; a groove that slides across does.
-Approach approach(const State& state, std::size_t wall, const WallMotion& motion, double dt, Team& team);
+Approach approach(const State& state, std::size_t wall, const WallMotion& motion, double dt, Passes& passes);
 
 }  // namespace grit

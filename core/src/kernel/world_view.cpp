@@ -20,6 +20,11 @@ void WorldView::invalidate() {
   net_step_ = contact_step_ = wall_contact_step_ = wall_step_ = clump_step_ = displacement_step_ = held_step_ = never;
 }
 
+void WorldView::complete() const {
+  if (!passes_.ranks().several()) return;
+  static_cast<void>(forces()), static_cast<void>(clumps()), static_cast<void>(contacts());
+}
+
 void WorldView::find_net_forces(std::size_t chunk) const {
   const Bodies& bodies = state_.bodies;
   const ChunkRange range(chunk, bodies.count());
@@ -41,6 +46,8 @@ void WorldView::find_net_forces(std::size_t chunk) const {
 
 std::span<const Row> WorldView::forces() const {
   if (net_step_ != step()) {
+    complete_sums(state_, passes_);
+    static_cast<void>(bodies());
     net_force_.resize(count()), net_moment_.resize(count());
     passes_.team().each(passes_.chunks().size(), [this](std::size_t chunk) { find_net_forces(chunk); });
     net_step_ = step();
@@ -59,7 +66,7 @@ std::span<const double> WorldView::unscaled_shares() const {
 
 std::span<const Vec3> WorldView::displacements() const {
   if (displacement_step_ == step()) return displacements_;
-  const Bodies& bodies = state_.bodies;
+  const Bodies& bodies = this->bodies();
   displacements_.resize(bodies.origin.size());
   for (std::size_t i = 0; i < displacements_.size(); ++i)
     displacements_[i] = xyz(bodies.position[i]) - bodies.origin[i];
@@ -93,6 +100,7 @@ std::span<const ClumpView> WorldView::clumps() const {
   clump_step_ = step();
   const Bodies& bodies = state_.bodies;
   if (bodies.clumps.none()) return clumps_;
+  complete_sums(state_, passes_);
   clump_of_.resize(count()), arms_.assign(count(), Vec3::Zero());
   for (std::size_t i = 0; i < count(); ++i) {
     const ClumpSphere& own = bodies.clumps.of_body[i];
@@ -123,20 +131,27 @@ std::span<const Contact> WorldView::contacts() const {
   if (contact_step_ == step()) return contacts_;
   contacts_.clear();
   contacts_.reserve(state_.pairs.touching_count() + state_.wall_contacts.touching_count());
-  state_.pairs.each_touching(state_.instant(true), [&](std::size_t c, const ContactRow& row) {
-    if (!acts(row)) return;
-    const Vec3 branch = state_.pairs.branch(c, state_.bodies, state_.cell.images());
-    contacts_.push_back({.a = state_.pairs.a(c),
-                         .b = state_.pairs.b(c),
-                         .with_wall = false,
-                         .feature = 0,
-                         .branch = branch,
-                         .normal = branch.normalized(),
-                         .force = xyz(row.force),
-                         .moment = xyz(row.moment),
-                         .normal_force = row.force.w,
-                         .overlap = row.moment.w});
-  });
+  for (const ContactTable::Kind kind : {ContactTable::Kind::within, ContactTable::Kind::across}) {
+    std::vector<Contact> of_rank;
+    std::vector<Contact>& own = passes_.ranks().several() ? of_rank : contacts_;
+    state_.pairs.each_touching(kind, state_.instant(true), [&](std::size_t c, const ContactRow& row) {
+      if (!acts(row)) return;
+      const Vec3 branch = state_.pairs.branch(c, state_.bodies, state_.cell.images());
+      own.push_back({.a = state_.pairs.a(c),
+                     .b = state_.pairs.b(c),
+                     .with_wall = false,
+                     .feature = 0,
+                     .branch = branch,
+                     .normal = branch.normalized(),
+                     .force = xyz(row.force),
+                     .moment = xyz(row.moment),
+                     .normal_force = row.force.w,
+                     .overlap = row.moment.w});
+    });
+    if (!passes_.ranks().several()) continue;
+    const auto found = passes_.ranks().all(of_rank);
+    contacts_.insert(contacts_.end(), found.begin(), found.end());
+  }
   const auto include_walls = contacts_with_walls();
   contacts_.insert(contacts_.end(), include_walls.begin(), include_walls.end());
   contact_step_ = step();
@@ -146,6 +161,8 @@ std::span<const Contact> WorldView::contacts() const {
 std::span<const Contact> WorldView::contacts_with_walls() const {
   if (wall_contact_step_ == step()) return wall_contacts_;
   wall_contacts_.clear();
+  static_cast<void>(bodies());
+  state_.wall_contacts.complete(passes_.ranks());
   state_.wall_contacts.each([&](const WallContacts::Touching& t) {
     if (!t.acts()) return;
     const double arm = state_.bodies.position[t.contact->body].w - t.contact->overlap;
@@ -167,9 +184,14 @@ std::span<const Contact> WorldView::contacts_with_walls() const {
 double WorldView::mean_contact_force() const {
   double sum = 0;
   std::size_t count = 0;
-  state_.pairs.each_touching(state_.instant(true), [&](std::size_t, const ContactRow& row) {
-    sum += std::abs(row.force.w), count += acts(row);
-  });
+  if (passes_.ranks().several()) {
+    for (const Contact& contact : contacts()) sum += std::abs(contact.normal_force), ++count;
+    return count > 0 ? sum / static_cast<double>(count) : 0;
+  }
+  for (const ContactTable::Kind kind : {ContactTable::Kind::within, ContactTable::Kind::across})
+    state_.pairs.each_touching(kind, state_.instant(true), [&](std::size_t, const ContactRow& row) {
+      sum += std::abs(row.force.w), count += acts(row);
+    });
   state_.wall_contacts.each(
       [&](const WallContacts::Touching& t) { sum += std::abs(t.row->force.w), count += t.acts(); });
   return count > 0 ? sum / static_cast<double>(count) : 0;

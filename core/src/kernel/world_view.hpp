@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "grit/world.hpp"
+#include "kernel/completion.hpp"
 #include "kernel/passes.hpp"
 #include "kernel/state.hpp"
 
@@ -16,7 +17,7 @@ class EnergyBalance;
 /// A const view of a state. Derived quantities are computed on demand, at most once per instant.
 class WorldView final : public World {
  public:
-  WorldView(const State& state, Passes& passes) : state_(state), passes_(passes) {}
+  WorldView(State& state, Passes& passes) : state_(state), passes_(passes) {}
   void set_balance(EnergyBalance& balance) { balance_ = &balance; }
 
   /// After a change of state: everything is recomputed on demand.
@@ -24,6 +25,8 @@ class WorldView final : public World {
   /// The same for forces and quantities that depend on them, and for settings.
   void invalidate_forces() { net_step_ = clump_step_ = held_step_ = never; }
 
+  /// Completes all quantities that depend on other ranks, which then need not take part until the next step.
+  void complete() const;
   /// As Simulation::keep(), of arrays that are computed on demand.
   std::shared_ptr<const void> keep(WorldArray array);
 
@@ -32,13 +35,13 @@ class WorldView final : public World {
   double dt() const override { return state_.time.dt; }
   const std::string& stage() const override { return state_.stage; }
   std::span<const std::uint32_t> ids() const override { return state_.bodies.id; }
-  std::span<const Row> positions() const override { return {state_.bodies.position.data(), count()}; }
-  std::span<const Row> velocities() const override { return {state_.bodies.velocity.data(), count()}; }
-  std::span<const Row> spins() const override { return {state_.bodies.spin.data(), count()}; }
+  std::span<const Row> positions() const override { return {bodies().position.data(), count()}; }
+  std::span<const Row> velocities() const override { return {bodies().velocity.data(), count()}; }
+  std::span<const Row> spins() const override { return {bodies().spin.data(), count()}; }
   std::span<const std::uint8_t> materials() const override { return {state_.bodies.material.data(), count()}; }
   std::span<const std::string> material_names() const override { return state_.materials; }
   std::span<const BodyGroup> groups() const override { return state_.bodies.groups; }
-  std::span<const Vec3> rotations() const override { return state_.bodies.rotation; }
+  std::span<const Vec3> rotations() const override { return bodies().rotation; }
   std::span<const Vec3> displacements() const override;
   std::span<const std::uint32_t> clump_of() const override;
   std::span<const ClumpView> clumps() const override;
@@ -65,9 +68,14 @@ class WorldView final : public World {
  private:
   static constexpr std::uint64_t never = ~0ull;
   std::size_t count() const { return state_.bodies.count(); }
+  /// With those of other ranks up to date.
+  const Bodies& bodies() const {
+    complete_bodies(state_, passes_);
+    return state_.bodies;
+  }
   void find_net_forces(std::size_t chunk) const;
 
-  const State& state_;
+  State& state_;
   Passes& passes_;
   EnergyBalance* balance_ = nullptr;
 

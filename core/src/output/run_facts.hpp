@@ -39,7 +39,7 @@ struct RunFacts {
   Description description;  ///< resolved: with inherited, set and default values
   std::vector<PluginUsed> plugins;
   std::int64_t seed = 0;
-  unsigned threads = 1;
+  unsigned threads = 1, ranks = 1;
   std::map<std::string, ClumpFacts> clumps;  ///< by name of the group
   DescriptionSource source = {};
   /// Points of the reference curves, {"x": […], "y": […]} by name: a page needs no file beside the folder of results.

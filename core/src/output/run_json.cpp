@@ -63,6 +63,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"resumed", 0},
            {"seed", facts.seed},
            {"threads", facts.threads},
+           {"ranks", facts.ranks},
            {"stage", ""},
            {"time", 0.0},
            {"steps", 0},
@@ -140,6 +141,7 @@ void RunJson::finish(const World& world, const RunSummary& summary) {
   json_["steps"] = summary.steps;
   json_["bodies"] = summary.bodies;
   json_["threads"] = summary.threads;
+  json_["ranks"] = summary.ranks;
   json_["time_step_s"] = summary.time_step;
   json_["critical_time_step_s"] = summary.critical_time_step;
   json_["contacts_per_body"] = summary.contacts_per_body;

@@ -215,9 +215,12 @@ std::vector<Fact> cost_facts(const RunResults& run) {
   }
   if (const auto wall = number(run, "/wall_s"); wall && has_progress) {
     const auto threads = number(run, "/threads");
+    const double ranks = number(run, "/ranks").value_or(1);
     facts.push_back({"run time", cost_text(*wall),
-                     threads ? fmt::format("{:g} thread{}", *threads, *threads == 1 ? "" : "s") : "", false,
-                     "took " + cost_text(*wall)});
+                     threads ? fmt::format("{}{:g} thread{}", ranks > 1 ? fmt::format("{:g} ranks of ", ranks) : "",
+                                           *threads, *threads == 1 ? "" : "s")
+                             : "",
+                     false, "took " + cost_text(*wall)});
   }
   if (const auto speed = number(run, "/particle_steps_per_s"); speed && has_progress)
     facts.push_back({"speed", fmt::format("{:.3g} M", 1e-6 * *speed), "particle-steps per second", false,

@@ -52,7 +52,7 @@ struct RunSummary {
   double wall_seconds = 0;       ///< of the stepping
   double particle_steps_per_second = 0;
   std::size_t rebuilds = 0;  ///< of the neighbour lists
-  unsigned threads = 1;
+  unsigned threads = 1, ranks = 1;  ///< threads of each rank
   std::vector<PhaseTime> phases;
   std::vector<ProbeTime> probes;
   Model model;

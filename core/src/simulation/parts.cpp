@@ -16,13 +16,14 @@ Recorder& no_recorder() {
 
 }  // namespace
 
-Simulation::Parts::Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, unsigned threads, Recorder* record)
+Simulation::Parts::Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, unsigned threads, Recorder* record,
+                         Communicator* ranks)
     : opened(std::move(scene)),
       recorder(record != nullptr ? *record : no_recorder()),
       kernel(at_first_instant(opened->scene.document,
                               [&] {
                                 const LiveScene& live = opened->live;
-                                return Kernel(live.now(), live.components(), std::move(prepared), threads);
+                                return Kernel(live.now(), live.components(), std::move(prepared), threads, ranks);
                               })),
       runner(opened->scene, opened->live, kernel, recorder),
       progress(runner, kernel.world(), opened->scene.stages.size()) {
@@ -56,11 +57,16 @@ void Simulation::Parts::resume(const Checkpoint& checkpoint) {
 
 StageRunner::Event Simulation::Parts::next(bool stop) try {
   refuse_failed();
+  // By clocks and signals, of which ranks have different ones.
+  stop = kernel.any_rank(stop);
   // Saved before the step, so that the checkpoint is the state at which the simulation stops.
-  if (checkpoints.is_due(stop)) checkpoints.save([this] { return runner.save(); });
+  if (kernel.any_rank(checkpoints.is_due(stop))) checkpoints.save([this] { return runner.save(); });
   const StageRunner::Event event = placed([&] { return runner.next(stop); });
   if (event == StageRunner::Event::stage_ended) progress.enter_stage();
-  else if (event == StageRunner::Event::stepped) progress.step();
+  else if (event == StageRunner::Event::stepped) {
+    const auto alone = kernel.alone();
+    progress.step();
+  }
   return event;
 } catch (const NumericsError& error) {
   // A time step that is too large can be set again; a stage that fails otherwise would fail again.

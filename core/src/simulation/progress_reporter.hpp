@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "grit/simulation.hpp"
-#include "threads/stopwatch.hpp"
 #include "simulation/stage_runner.hpp"
+#include "threads/stopwatch.hpp"
 
 namespace grit {
 
@@ -37,7 +37,7 @@ class ProgressReporter {
       now.seconds_left = seconds_since(began_) * (1 - *now.fraction) / done;
     now.time = world_.time();
     now.particle_steps_per_second =
-        static_cast<double>(world_.step() - last_step_) * static_cast<double>(world_.positions().size()) / since;
+        static_cast<double>(world_.step() - last_step_) * static_cast<double>(world_.ids().size()) / since;
     last_ = std::chrono::steady_clock::now(), last_step_ = world_.step();
     report_(now);
   }

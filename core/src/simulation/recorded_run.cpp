@@ -28,6 +28,7 @@ void record_failure(Simulation::Parts& parts) {
   }
   try {
     parts.runner.fill(summary);
+    const auto alone = parts.kernel.alone();  // other ranks need not have failed
     parts.recorder.finish(parts.kernel.world(), summary);
   } catch (const std::exception&) {
     // The first one is reported.
@@ -45,7 +46,9 @@ RunSummary run_recorded(Simulation& simulation) {
     if (summary.status == "done" && parts.checkpoints.keeps())
       parts.checkpoints.save([&] { return parts.runner.save(); });
   } catch (const RefusedRecord&) {
-    if (parts.checkpoints.keeps()) parts.checkpoints.save([&] { return parts.runner.save(); });
+    // Other ranks do not know of it.
+    if (parts.checkpoints.keeps() && parts.kernel.ranks() == 1)
+      parts.checkpoints.save([&] { return parts.runner.save(); });
     throw;
   } catch (const NumericsError& error) {
     summary.status = "failed", summary.message = error.what(), summary.guard = error.guard();

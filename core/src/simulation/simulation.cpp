@@ -75,7 +75,7 @@ Forecast Simulation::check() {
   Parts& parts = *parts_;
   if (!parts.started) at_first_instant(parts.opened->scene.document, [&] { parts.kernel.find_forces(); });
   return {.bodies = world().positions().size(),
-          .contacts = parts.kernel.state().pairs.touching_count(),
+          .contacts = parts.kernel.contact_count(),
           .time_step = world().dt(),
           .critical_time_step = parts.kernel.critical_time_step(),
           .bytes = parts.kernel.state().bytes()};

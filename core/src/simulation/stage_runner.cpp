@@ -63,13 +63,19 @@ std::vector<ProbeGroup> StageRunner::probes() const {
   return groups;
 }
 
-void StageRunner::begin_recording() { recorder_.begin(world_, probes()); }
+void StageRunner::begin_recording() {
+  kernel_.complete_world();  // the first rank alone records
+  const auto alone = kernel_.alone();
+  recorder_.begin(world_, probes());
+}
 
 void StageRunner::resume(const Checkpoint& checkpoint) try {
   Archive archive(checkpoint.state);
   restore_kernel(archive);
   serialize(archive);
-  if (!archive.at_end()) throw Error("a checkpoint holds more than this simulation restores");
+  // The first rank alone records, and its records are the last in it.
+  if (kernel_.is_first_rank() && !archive.at_end())
+    throw Error("a checkpoint holds more than this simulation restores");
   begin_recording();
   if (!done()) enter_stage();
 } catch (const Description::exception&) {
@@ -184,8 +190,13 @@ void StageRunner::end_stage(const StageDescription& stage) {
   refuse_without_a_step(stage);
   const std::string by = ended_by(stage.until, kernel_, start_), behind = kernel_.fallen_behind();
   kernel_.end_stage();
-  recorder_.stage_ended(world_, (by.empty() ? "" : "by " + by + ", ") + reached() +
-                                    (behind.empty() ? "" : "; " + behind) + in_flight(stage.until, world_));
+  const std::string what = (by.empty() ? "" : "by " + by + ", ") + reached() + (behind.empty() ? "" : "; " + behind) +
+                           in_flight(stage.until, world_);
+  kernel_.complete_world();
+  {
+    const auto alone = kernel_.alone();
+    recorder_.stage_ended(world_, what);
+  }
   if (stage.expect.void_ratio) {
     const double e = interior_void_ratio(world_);
     if (!(std::abs(e - *stage.expect.void_ratio) <= stage.expect.within))
@@ -337,8 +348,7 @@ void StageRunner::sample(bool all) {
     if (all || observer.schedule().is_due()) observer.sample(i, world_, recorder_);
   }
   if (counts_contacts() && world_.positions().size() > 0)
-    contact_sum_ += 2.0 * static_cast<double>(kernel_.state().pairs.touching_count()) /
-                    static_cast<double>(world_.positions().size()),
+    contact_sum_ += 2.0 * static_cast<double>(kernel_.contact_count()) / static_cast<double>(world_.positions().size()),
         ++contact_samples_;
 }
 
@@ -352,6 +362,8 @@ void StageRunner::frame() {
       note_fields(observer);
       fields.push_back(observer.fields(world_));
     }
+  kernel_.complete_world();
+  const auto alone = kernel_.alone();
   recorder_.frame(world_, fields);
 }
 
@@ -392,6 +404,8 @@ void StageRunner::finish(RunSummary& summary) {
       if (const std::string fault = unclosed_balance(world_.energies(), live_.now().contacts.type()); !fault.empty())
         summary.warnings.push_back(fault);
   }
+  kernel_.complete_world();
+  const auto alone = kernel_.alone();
   recorder_.finish(world_, summary);
 }
 
@@ -404,7 +418,7 @@ void StageRunner::fill(RunSummary& summary) const {
   summary.wall_seconds = stepping_;
   summary.particle_steps_per_second = stepping_ > 0 ? kernel_.body_steps() / stepping_ : 0;
   summary.rebuilds = kernel_.state().lists.rebuilds();
-  summary.threads = kernel_.threads();
+  summary.threads = kernel_.threads(), summary.ranks = kernel_.ranks();
   summary.model = kernel_.model();
   summary.phases = kernel_.phases();
   double in_phases = 0;

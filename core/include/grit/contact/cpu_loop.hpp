@@ -313,7 +313,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       const std::uint32_t now = bits(contacts);
       const L reach = in_precision<L>(radii);
       const auto length = [&] { return sqrt(in_precision<L>(square)); };
-      double* const state_at = batch.state + block * fields * block_size + sub;
+      double* state_at = nullptr;
+      if constexpr (fields > 0) state_at = batch.state + block * fields * block_size + sub;
       contacts_now |= now << sub;
       constexpr std::uint32_t all = (1u << width) - 1u;
       const std::uint32_t gone_now = before >> sub & all & ~now;

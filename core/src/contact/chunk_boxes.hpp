@@ -1,0 +1,33 @@
+// Which chunks of bodies are near each other.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "bodies/bodies.hpp"
+#include "contact/skins.hpp"
+#include "grit/world.hpp"
+
+namespace grit {
+
+/// A box around the bodies of each chunk, with their skins and the reach of the law.
+class ChunkBoxes {
+ public:
+  ChunkBoxes(const Bodies& bodies, const Cell& cell, const Skins& skins, Team& team);
+  /// Whether a body of one chunk may be a neighbour of one of the other, across periodic sides, too.
+  bool near(std::size_t one, std::size_t other) const { return near(boxes_[one], boxes_[other]); }
+  /// Of the chunks below `first`, those near any of `first` … `last` − 1.
+  std::vector<std::size_t> near_below(std::size_t first, std::size_t last) const;
+
+ private:
+  struct Box {
+    Vec3 low, high;
+  };
+  bool near(const Box& one, const Box& other) const;
+
+  std::vector<Box> boxes_;
+  Vec3 period_ = Vec3::Zero();  // m; 0 along axes that are not periodic
+  bool skewed_ = false;         // then images are shifted: all chunks count as near
+};
+
+}  // namespace grit

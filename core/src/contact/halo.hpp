@@ -1,0 +1,34 @@
+// Bodies near those of other ranks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "bodies/bodies.hpp"
+#include "contact/contact_table.hpp"
+#include "ranks/ranks.hpp"
+
+namespace grit {
+
+/// Bodies of other ranks in pairs with own ones, whose values a rank needs, and own ones that others need.
+class Halo {
+ public:
+  /// After neighbour lists were rebuilt.
+  void build(const ContactTable& pairs, const Ranks& ranks);
+  /// Updates values of other ranks' bodies.
+  void exchange(std::vector<double>& by_body, Ranks& ranks) const;
+  /// The same of positions, velocities and spins.
+  void exchange(Bodies& bodies, Ranks& ranks) const;
+  /// Number of bodies of other ranks.
+  std::size_t count() const;
+
+ private:
+  /// `pack(body)` is sent, `unpack(body, value)` takes it.
+  template <class Pack, class Unpack>
+  void exchange(Pack pack, Unpack unpack, Ranks& ranks) const;
+
+  std::vector<std::vector<std::uint32_t>> sent_, received_;  // bodies by rank, in ascending order
+};
+
+}  // namespace grit

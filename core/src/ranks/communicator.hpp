@@ -1,0 +1,33 @@
+// Messages between the processes that share one simulation.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace grit {
+
+/// The ranks of a run: processes started by `mpirun`. All call the same functions in the same order.
+class Communicator {
+ public:
+  /// Bytes to or from a rank.
+  struct Message {
+    unsigned rank;
+    std::span<std::byte> bytes;
+  };
+
+  virtual ~Communicator() = default;
+  /// From 0 on.
+  virtual unsigned rank() const = 0;
+  virtual unsigned count() const = 0;
+  /// Fills `all` with a part of each rank: that of rank r from starts[r] to starts[r + 1]. The own part is in place
+  /// before.
+  virtual void gather(std::span<std::byte> all, std::span<const std::size_t> starts) = 0;
+  /// Sends some messages and receives others, of known lengths: at most one to and one from each rank.
+  virtual void exchange(std::span<const Message> sent, std::span<const Message> received) = 0;
+  /// The last call of each rank: waits for the others. False if they have not called it within so many seconds.
+  virtual bool finish(double seconds) = 0;
+  /// Kills the processes of all ranks, with this exit status, as this one cannot go on.
+  [[noreturn]] virtual void kill_all(int status) = 0;
+};
+
+}  // namespace grit

@@ -1,0 +1,29 @@
+#include "ranks/ranks.hpp"
+
+#include <numeric>
+#include <stdexcept>
+
+namespace grit {
+
+std::vector<std::size_t> Ranks::starts(std::size_t size, std::size_t per_chunk, std::size_t count) const {
+  std::vector<std::size_t> starts;
+  for (unsigned r = 0; r < this->count(); ++r) starts.push_back(std::min(cuts_.first(r) * per_chunk, count) * size);
+  starts.push_back(count * size);
+  return starts;
+}
+
+void Ranks::refuse_alone() const {
+  if (alone_ > 0) throw std::logic_error("one rank alone needs values of the others");
+}
+
+std::vector<std::size_t> Ranks::starts_of(std::size_t own) {
+  refuse_alone();
+  std::vector<std::size_t> sizes(count()), ends(count() + 1, 0), starts(count() + 1);
+  for (unsigned r = 0; r <= count(); ++r) starts[r] = r * sizeof(std::size_t);
+  sizes[rank()] = own;
+  all_->gather(bytes_of(sizes), starts);
+  std::partial_sum(sizes.begin(), sizes.end(), ends.begin() + 1);
+  return ends;
+}
+
+}  // namespace grit

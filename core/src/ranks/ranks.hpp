@@ -1,0 +1,130 @@
+// The ranks that share a simulation, as its parts see them.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "ranks/communicator.hpp"
+#include "ranks/cuts.hpp"
+
+namespace grit {
+
+/// Every rank runs the whole program, but evaluates and moves its own chunks of bodies only; it then completes what it
+/// needs of others. So all take the same decisions, and results have the same bits for any number of ranks. With one
+/// rank, all functions return at once.
+class Ranks {
+ public:
+  /// Without a communicator there is one rank.
+  explicit Ranks(Communicator* all = nullptr)
+      : all_(all != nullptr && all->count() > 1 ? all : nullptr), cuts_(count(), {}) {}
+
+  bool several() const { return all_ != nullptr; }
+  unsigned rank() const { return several() ? all_->rank() : 0; }
+  unsigned count() const { return several() ? all_->count() : 1; }
+
+  const Cuts& cuts() const { return cuts_; }
+  void resize(std::size_t chunks) { cuts_.resize(chunks); }
+  /// Divides the chunks anew. `weights`: of each, equal on all ranks.
+  void divide(std::span<const double> weights) { cuts_ = Cuts(count(), weights); }
+  /// The own chunks are first() … last() − 1.
+  std::size_t first() const { return cuts_.first(rank()); }
+  std::size_t last() const { return cuts_.last(rank()); }
+  bool owns(std::size_t chunk) const { return cuts_.owns(rank(), chunk); }
+  bool owns_body(std::size_t body) const { return owns(body / chunk_bodies); }
+
+  /// Fills in values of other ranks' chunks; those of own ones are there.
+  template <class Values>
+  void complete(Values& by_chunk) {
+    if (several()) gather(bytes_of(by_chunk), starts(sizeof(by_chunk[0]), 1, by_chunk.size()));
+  }
+  /// The same of values by body.
+  template <class Values>
+  void complete_bodies(Values& by_body, std::size_t bodies) {
+    if (several())
+      gather(bytes_of(by_body).first(bodies * sizeof(by_body[0])), starts(sizeof(by_body[0]), chunk_bodies, bodies));
+  }
+  /// The lists of all ranks, one after the other.
+  template <class T, class Allocator>
+  std::vector<T, Allocator> all(const std::vector<T, Allocator>& own) {
+    if (!several()) return own;
+    const std::vector<std::size_t> starts = starts_of(own.size() * sizeof(T));
+    std::vector<T, Allocator> found(starts.back() / sizeof(T));
+    std::copy(own.begin(), own.end(), found.begin() + static_cast<std::ptrdiff_t>(starts[rank()] / sizeof(T)));
+    gather(bytes_of(found), starts);
+    return found;
+  }
+  /// The value of each rank.
+  template <class T>
+  std::vector<T> each(const T& own) {
+    return all(std::vector<T>{own});
+  }
+  bool any(bool own) {
+    if (!several()) return own;
+    const auto found = each(static_cast<char>(own));
+    return std::ranges::find(found, 1) != found.end();
+  }
+  /// Sends a list to each rank, and returns the list from each.
+  template <class T>
+  std::vector<std::vector<T>> exchange(const std::vector<std::vector<T>>& to) {
+    std::vector<std::size_t> sizes;
+    for (const auto& list : to) sizes.push_back(list.size());
+    const std::vector<std::size_t> matrix = all(sizes);
+    std::vector<std::vector<T>> from(count());
+    std::vector<Communicator::Message> sent, received;
+    for (unsigned r = 0; r < count(); ++r) {
+      from[r].resize(matrix[r * count() + rank()]);
+      if (r == rank()) from[r] = to[r];
+      else add(sent, r, to[r]), add(received, r, from[r]);
+    }
+    exchange(sent, received);
+    return from;
+  }
+  /// Adds a message unless it is empty. The list of one that is sent is not changed.
+  template <class List>
+  static void add(std::vector<Communicator::Message>& messages, unsigned rank, List& list) {
+    auto* const bytes = const_cast<std::byte*>(reinterpret_cast<const std::byte*>(list.data()));
+    if (!list.empty()) messages.push_back({rank, {bytes, list.size() * sizeof(list[0])}});
+  }
+  /// Messages of known lengths; see Communicator.
+  void exchange(std::span<const Communicator::Message> sent, std::span<const Communicator::Message> received) {
+    if (!several()) return;
+    refuse_alone();
+    all_->exchange(sent, received);
+  }
+
+  /// While it lives, one rank does what others do not, such as writing: what needs others is a defect, and throws.
+  class Alone {
+   public:
+    explicit Alone(Ranks& ranks) : ranks_(ranks) { ++ranks_.alone_; }
+    ~Alone() { --ranks_.alone_; }
+    Alone(const Alone&) = delete;
+
+   private:
+    Ranks& ranks_;
+  };
+
+ private:
+  template <class Values>
+  static std::span<std::byte> bytes_of(Values& values) {
+    static_assert(std::is_trivially_destructible_v<typename Values::value_type>, "values without memory of their own");
+    return {reinterpret_cast<std::byte*>(values.data()), values.size() * sizeof(values[0])};
+  }
+  /// Bytes before the own chunks of each rank, and those of all `count` values, of which each chunk has `per_chunk`.
+  std::vector<std::size_t> starts(std::size_t size, std::size_t per_chunk, std::size_t count) const;
+  /// The same for as many bytes of each rank as it says.
+  std::vector<std::size_t> starts_of(std::size_t own);
+  void gather(std::span<std::byte> all, const std::vector<std::size_t>& starts) {
+    refuse_alone();
+    all_->gather(all, starts);
+  }
+  void refuse_alone() const;
+
+  Communicator* all_;
+  Cuts cuts_;  // until bodies are divided, the last rank has all
+  int alone_ = 0;
+};
+
+}  // namespace grit

@@ -1,0 +1,107 @@
+// Ranks that are threads of one process.
+#pragma once
+
+#include <algorithm>
+#include <barrier>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "ranks/communicator.hpp"
+
+namespace grit::test {
+
+/// What the threads show each other.
+class Board {
+ public:
+  explicit Board(unsigned count) : shown_(count), barrier_(static_cast<std::ptrdiff_t>(count)) {}
+
+  unsigned count() const { return static_cast<unsigned>(shown_.size()); }
+  /// Shows messages to all ranks, lets this one take what it needs, and returns when all have.
+  void share(unsigned rank, std::vector<Communicator::Message> messages,
+             const std::function<void(const std::vector<std::vector<Communicator::Message>>&)>& take) {
+    shown_[rank] = std::move(messages);
+    meet();
+    take(shown_);
+    meet();
+  }
+  /// A rank ends by an exception: the others must not wait for it.
+  void leave() {
+    failed_ = true;
+    barrier_.arrive_and_drop();
+  }
+
+ private:
+  void meet() {
+    barrier_.arrive_and_wait();
+    if (failed_) throw std::runtime_error("another rank has failed");
+  }
+
+  std::vector<std::vector<Communicator::Message>> shown_;
+  std::barrier<> barrier_;
+  std::atomic<bool> failed_{false};
+};
+
+class ThreadRank final : public Communicator {
+ public:
+  ThreadRank(Board& board, unsigned rank) : board_(board), rank_(rank) {}
+
+  unsigned rank() const override { return rank_; }
+  unsigned count() const override { return board_.count(); }
+  void gather(std::span<std::byte> all, std::span<const std::size_t> starts) override {
+    const auto part = [&](unsigned r) { return all.subspan(starts[r], starts[r + 1] - starts[r]); };
+    board_.share(rank_, {{rank_, part(rank_)}}, [&](const auto& shown) {
+      for (unsigned r = 0; r < count(); ++r)
+        if (r != rank_) copy(shown[r].front().bytes, part(r));
+    });
+  }
+  void exchange(std::span<const Message> sent, std::span<const Message> received) override {
+    board_.share(rank_, {sent.begin(), sent.end()}, [&](const auto& shown) {
+      for (const Message& one : received) {
+        const auto from = std::ranges::find(shown[one.rank], rank_, &Message::rank);
+        if (from == shown[one.rank].end()) throw std::logic_error("a message was not sent");
+        copy(from->bytes, one.bytes);
+      }
+    });
+  }
+  bool finish(double) override {
+    board_.share(rank_, {}, [](const auto&) {});
+    return true;
+  }
+  [[noreturn]] void kill_all(int) override { throw std::runtime_error("a rank ends all"); }
+
+ private:
+  static void copy(std::span<const std::byte> from, std::span<std::byte> to) {
+    if (from.size() != to.size()) throw std::logic_error("a message has another length");
+    std::ranges::copy(from, to.begin());
+  }
+
+  Board& board_;
+  unsigned rank_;
+};
+
+/// Calls work(communicator) on so many ranks at once. Throws the first exception of one.
+inline void on_ranks(unsigned count, const std::function<void(Communicator&)>& work) {
+  Board board(count);
+  std::vector<std::exception_ptr> failures(count);
+  {
+    std::vector<std::jthread> threads;
+    for (unsigned r = 0; r < count; ++r)
+      threads.emplace_back([&, r] {
+        ThreadRank own(board, r);
+        try {
+          work(own);
+        } catch (...) {
+          failures[r] = std::current_exception();
+          board.leave();
+        }
+      });
+  }
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace grit::test
