@@ -2,6 +2,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import time
 from pathlib import Path
@@ -84,11 +85,21 @@ def _facts(path, file):
     return json.loads(file.read_text(encoding='utf-8'))
 
 
-def run(path, scene, folder, threads, settings=None, environment=None, friends=()):
-    """Runs a scene, pinned to as many cores as it has threads; threads None: all."""
+def has_ranks(path):
+    """Whether this grit runs in several processes, and mpirun is there."""
+    return shutil.which('mpirun') is not None and (Path(path).parents[1] / 'lib/grit/mpi.so').is_file()
+
+
+def run(path, scene, folder, threads, settings=None, environment=None, friends=(), ranks=1):
+    """Runs a scene, pinned to as many cores as it has threads; threads None: all. `ranks`: processes, each with so many threads."""
     file = _fresh(folder)
     threads = threads or len(os.sched_getaffinity(0))
-    done = machine.run(command(path, scene, folder, threads, settings), threads, ROOT, environment, friends=friends)
+    words = command(path, scene, folder, threads, settings)
+    if ranks > 1:
+        words = ['mpirun', '--bind-to', 'none', '--oversubscribe', '-n', str(ranks), *words]
+        if os.geteuid() == 0:  # Open MPI refuses otherwise, as in a container
+            environment = (environment or {}) | {'OMPI_ALLOW_RUN_AS_ROOT': '1', 'OMPI_ALLOW_RUN_AS_ROOT_CONFIRM': '1'}
+    done = machine.run(words, threads * ranks, ROOT, environment, friends=friends)
     return Done(done.output, done.others, _facts(path, file))
 
 

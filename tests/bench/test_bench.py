@@ -97,6 +97,9 @@ class Bench(unittest.TestCase):
         out = self.place / 'rows.json'
         # A test with all probes takes too long.
         names = ['threads', 'alone', 'alone_in_flow', 'size', 'grading', 'drum', 'silo', 'clumps', 'memory', 'start', 'busy', 'walls', 'phases', 'growth']
+        from measure import grit  # knows the store from here on
+        if grit.has_ranks(GRIT):
+            names.insert(1, 'ranks')
         if (GRIT.parent / 'bench_kernels').is_file():
             names += ['guards', 'bare']
         done = call(BENCH / 'rows', '--grit', GRIT, '--short', '--json', out, *names)

@@ -1,12 +1,12 @@
 #include "contact/halo.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace grit {
 
 void Halo::build(const ContactTable& pairs, const Ranks& ranks) {
   sent_.assign(ranks.count(), {}), received_.assign(ranks.count(), {});
+  out_.resize(ranks.count()), in_.resize(ranks.count());
   if (!ranks.several()) return;
   const auto add = [&](std::uint32_t own, std::uint32_t other) {
     const unsigned rank = ranks.cuts().owner_of_body(other);
@@ -27,34 +27,36 @@ void Halo::build(const ContactTable& pairs, const Ranks& ranks) {
 }
 
 template <class Pack, class Unpack>
-void Halo::exchange(Pack pack, Unpack unpack, Ranks& ranks) const {
-  using Value = decltype(pack(std::uint32_t{}));
-  std::vector<std::vector<Value>> out(sent_.size()), in(received_.size());
+void Halo::exchange(std::size_t numbers, Pack pack, Unpack unpack, Ranks& ranks) const {
+  if (!ranks.several()) return;
   std::vector<Communicator::Message> sent, received;
-  for (unsigned r = 0; r < out.size(); ++r) {
-    for (const std::uint32_t body : sent_[r]) out[r].push_back(pack(body));
-    in[r].resize(received_[r].size());
-    Ranks::add(sent, r, out[r]), Ranks::add(received, r, in[r]);
+  for (unsigned r = 0; r < ranks.count(); ++r) {
+    out_[r].resize(sent_[r].size() * numbers), in_[r].resize(received_[r].size() * numbers);
+    for (std::size_t k = 0; k < sent_[r].size(); ++k) pack(sent_[r][k], &out_[r][k * numbers]);
+    Ranks::add(sent, r, out_[r]), Ranks::add(received, r, in_[r]);
   }
   ranks.exchange(sent, received);
-  for (unsigned r = 0; r < in.size(); ++r)
-    for (std::size_t k = 0; k < in[r].size(); ++k) unpack(received_[r][k], in[r][k]);
+  for (unsigned r = 0; r < ranks.count(); ++r)
+    for (std::size_t k = 0; k < received_[r].size(); ++k) unpack(received_[r][k], &in_[r][k * numbers]);
 }
 
 void Halo::exchange(std::vector<double>& by_body, Ranks& ranks) const {
-  exchange([&](std::uint32_t i) { return by_body[i]; }, [&](std::uint32_t i, double value) { by_body[i] = value; },
-           ranks);
+  exchange(
+      1, [&](std::uint32_t i, double* to) { *to = by_body[i]; },
+      [&](std::uint32_t i, const double* from) { by_body[i] = *from; }, ranks);
 }
 
 void Halo::exchange(Bodies& bodies, Ranks& ranks) const {
-  using Moved = std::array<Row, 3>;
+  // Radius, mass and inertia are known.
+  const auto each = [&](std::uint32_t i, auto* at, auto copy) {
+    for (auto* array : {&bodies.position, &bodies.velocity, &bodies.spin}) {
+      Row& row = (*array)[i];
+      copy(row.x, *at++), copy(row.y, *at++), copy(row.z, *at++);
+    }
+  };
   exchange(
-      [&](std::uint32_t i) {
-        return Moved{bodies.position[i], bodies.velocity[i], bodies.spin[i]};
-      },
-      [&](std::uint32_t i, const Moved& moved) {
-        bodies.position[i] = moved[0], bodies.velocity[i] = moved[1], bodies.spin[i] = moved[2];
-      },
+      9, [&](std::uint32_t i, double* to) { each(i, to, [](double own, double& sent) { sent = own; }); },
+      [&](std::uint32_t i, const double* from) { each(i, from, [](double& own, double found) { own = found; }); },
       ranks);
 }
 

@@ -24,11 +24,12 @@ class Halo {
   std::size_t count() const;
 
  private:
-  /// `pack(body)` is sent, `unpack(body, value)` takes it.
+  /// `pack(body, to)` writes so many numbers of a body, `unpack(body, from)` reads them.
   template <class Pack, class Unpack>
-  void exchange(Pack pack, Unpack unpack, Ranks& ranks) const;
+  void exchange(std::size_t numbers, Pack pack, Unpack unpack, Ranks& ranks) const;
 
   std::vector<std::vector<std::uint32_t>> sent_, received_;  // bodies by rank, in ascending order
+  mutable std::vector<std::vector<double>> out_, in_;        // by rank; kept, as new pages cost more than the messages
 };
 
 }  // namespace grit

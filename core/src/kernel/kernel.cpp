@@ -266,6 +266,14 @@ std::string Kernel::fallen_behind() const {
   return walls + (walls.empty() || cell.empty() ? "" : "; ") + cell;
 }
 
+std::pair<bool, bool> Kernel::any_rank(bool one, bool other) {
+  if (!passes_.ranks().several()) return {one, other};
+  std::pair<bool, bool> any{false, false};
+  for (const auto& of_rank : passes_.ranks().each(std::pair(one, other)))
+    any = {any.first || of_rank.first, any.second || of_rank.second};
+  return any;
+}
+
 std::size_t Kernel::contact_count() const {
   std::size_t count = 0;
   for (const std::size_t of_rank : passes_.ranks().each(state_.pairs.touching_count())) count += of_rank;

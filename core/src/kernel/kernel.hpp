@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernel/energy_balance.hpp"
@@ -57,8 +58,8 @@ class Kernel {
   bool keeps_energy_balance() const { return balance_.is_kept(); }
   bool is_first_rank() const { return passes_.ranks().rank() == 0; }
   unsigned ranks() const { return passes_.ranks().count(); }
-  /// Whether any rank says so; all must call this.
-  bool any_rank(bool own) { return passes_.ranks().any(own); }
+  /// Whether any rank says so, of each; all must call this.
+  std::pair<bool, bool> any_rank(bool one, bool other);
   /// See Ranks::Alone.
   Ranks::Alone alone() const { return Ranks::Alone(passes_.ranks()); }
   /// Completes what the world shows on this rank; all must call this.

@@ -16,14 +16,17 @@ void Ranks::refuse_alone() const {
   if (alone_ > 0) throw std::logic_error("one rank alone needs values of the others");
 }
 
+std::vector<std::size_t> Ranks::one_each(std::size_t size) const {
+  std::vector<std::size_t> starts;
+  for (unsigned r = 0; r <= count(); ++r) starts.push_back(r * size);
+  return starts;
+}
+
 std::vector<std::size_t> Ranks::starts_of(std::size_t own) {
-  refuse_alone();
-  std::vector<std::size_t> sizes(count()), ends(count() + 1, 0), starts(count() + 1);
-  for (unsigned r = 0; r <= count(); ++r) starts[r] = r * sizeof(std::size_t);
-  sizes[rank()] = own;
-  all_->gather(bytes_of(sizes), starts);
-  std::partial_sum(sizes.begin(), sizes.end(), ends.begin() + 1);
-  return ends;
+  const std::vector<std::size_t> sizes = each(own);
+  std::vector<std::size_t> starts(count() + 1, 0);
+  std::partial_sum(sizes.begin(), sizes.end(), starts.begin() + 1);
+  return starts;
 }
 
 }  // namespace grit

@@ -59,7 +59,9 @@ class Ranks {
   /// The value of each rank.
   template <class T>
   std::vector<T> each(const T& own) {
-    return all(std::vector<T>{own});
+    std::vector<T> found(count(), own);
+    if (several()) gather(bytes_of(found), one_each(sizeof(T)));
+    return found;
   }
   bool any(bool own) {
     if (!several()) return own;
@@ -114,6 +116,8 @@ class Ranks {
   }
   /// Bytes before the own chunks of each rank, and those of all `count` values, of which each chunk has `per_chunk`.
   std::vector<std::size_t> starts(std::size_t size, std::size_t per_chunk, std::size_t count) const;
+  /// The same for so many bytes of each rank.
+  std::vector<std::size_t> one_each(std::size_t size) const;
   /// The same for as many bytes of each rank as it says.
   std::vector<std::size_t> starts_of(std::size_t own);
   void gather(std::span<std::byte> all, const std::vector<std::size_t>& starts) {

@@ -58,9 +58,10 @@ void Simulation::Parts::resume(const Checkpoint& checkpoint) {
 StageRunner::Event Simulation::Parts::next(bool stop) try {
   refuse_failed();
   // By clocks and signals, of which ranks have different ones.
-  stop = kernel.any_rank(stop);
+  const auto [stops, saves] = kernel.any_rank(stop, checkpoints.is_due(stop));
+  stop = stops;
   // Saved before the step, so that the checkpoint is the state at which the simulation stops.
-  if (kernel.any_rank(checkpoints.is_due(stop))) checkpoints.save([this] { return runner.save(); });
+  if (saves) checkpoints.save([this] { return runner.save(); });
   const StageRunner::Event event = placed([&] { return runner.next(stop); });
   if (event == StageRunner::Event::stage_ended) progress.enter_stage();
   else if (event == StageRunner::Event::stepped) {
