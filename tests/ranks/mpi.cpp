@@ -76,6 +76,14 @@ TEST_F(Mpi, AFolderOfResultsStopsAllRanks) {
   EXPECT_THAT(again.err, Not(HasSubstr("MPI_ABORT")));
 }
 
+TEST_F(Mpi, ProcessesThatItDoesNotConnectAreRefused) {
+  const Outcome alone = Program({"/bin/sh", "-c", "export SLURM_STEP_NUM_TASKS=2; " + run()}, folder_.path()).finish();
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_THAT(alone.err,
+              HasSubstr("started as one of 2 processes, of which MPI connects none; use mpirun of the same"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out"));
+}
+
 TEST_F(Mpi, TakesOneDescription) {
   const Outcome two = on(2, run(GRIT_SOURCE_DIR "/bench/scenes/tiny.json"));
   EXPECT_EQ(two.status, 1);

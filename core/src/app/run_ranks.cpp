@@ -72,6 +72,10 @@ std::vector<std::string> texts(Ranks& ranks, const std::string& own) {
 RunRanks::RunRanks() {
   if (started_processes() < 2) return;
   all_ = open_mpi();
+  // Else each would run alone, into the same folder.
+  if (all_->count() == 1)
+    throw Error("started as one of " + std::to_string(started_processes()) +
+                " processes, of which MPI connects none; use mpirun of the same MPI, or srun --mpi=pmix");
   ranks_ = Ranks(all_);
   if (is_first()) return;
   out_ = std::cout.rdbuf(silent_.rdbuf()), errors_ = std::cerr.rdbuf(silent_.rdbuf());
