@@ -14,7 +14,7 @@ ChunkBoxes::ChunkBoxes(const Bodies& bodies, const Cell& cell, const Skins& skin
     const Vec3 limit = Vec3::Constant(std::numeric_limits<double>::max());
     Box& box = boxes_[chunk] = {limit, -limit};
     for (std::size_t i = range.first; i < range.last; ++i) {
-      // More than half of the reach of the law, so that rounding cannot matter.
+      // Somewhat larger, so that rounding cannot matter.
       const Vec3 reach = Vec3::Constant((1 + 1e-9) * (bodies.position[i].w + skins.of_chunk(chunk) + skins.reach()));
       box.low = box.low.cwiseMin(xyz(bodies.position[i]) - reach);
       box.high = box.high.cwiseMax(xyz(bodies.position[i]) + reach);

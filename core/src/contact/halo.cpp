@@ -60,10 +60,4 @@ void Halo::exchange(Bodies& bodies, Ranks& ranks) const {
       ranks);
 }
 
-std::size_t Halo::count() const {
-  std::size_t count = 0;
-  for (const auto& list : received_) count += list.size();
-  return count;
-}
-
 }  // namespace grit

@@ -20,8 +20,6 @@ class Halo {
   void exchange(std::vector<double>& by_body, Ranks& ranks) const;
   /// The same of positions, velocities and spins.
   void exchange(Bodies& bodies, Ranks& ranks) const;
-  /// Number of bodies of other ranks.
-  std::size_t count() const;
 
  private:
   /// `pack(body, to)` writes so many numbers of a body, `unpack(body, from)` reads them.

@@ -27,7 +27,7 @@ class Ranks {
 
   const Cuts& cuts() const { return cuts_; }
   void resize(std::size_t chunks) { cuts_.resize(chunks); }
-  /// Divides the chunks anew. `weights`: of each, equal on all ranks.
+  /// Divides the chunks among the ranks again. `weights`: of each, equal on all ranks.
   void divide(std::span<const double> weights) { cuts_ = Cuts(count(), weights); }
   /// The own chunks are first() … last() − 1.
   std::size_t first() const { return cuts_.first(rank()); }
