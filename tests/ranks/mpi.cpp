@@ -51,8 +51,19 @@ TEST_F(Mpi, ADescriptionThatDiffersIsRefused) {
   const Outcome two = on(2, run("--set /seed=$((5 + OMPI_COMM_WORLD_RANK))"));
   EXPECT_EQ(two.status, 2);
   EXPECT_THAT(two.err, HasSubstr("grit: rank 1 on "));
-  EXPECT_THAT(two.err, HasSubstr("has another description than rank 0; use the same grit, plugins and files"));
+  EXPECT_THAT(two.err, HasSubstr(": differs from rank 0; use the same grit, plugins and files on all hosts\n"
+                                 "  description: found \"seed\": 6; rank 0 has \"seed\": 5\n"));
   EXPECT_THAT(two.err, HasSubstr("grit: 2 ranks cannot run this together, see above"));
+}
+
+TEST_F(Mpi, AFileThatDiffersIsRefused) {
+  const Outcome two =
+      on(2,
+         "mkdir $OMPI_COMM_WORLD_RANK; cd $OMPI_COMM_WORLD_RANK; echo 0.004 0.005 0.005 0.000$((5 + "
+         "OMPI_COMM_WORLD_RANK)) > grain.txt; " +
+             run("--set /bodies/sand/source='{\"type\": \"file\", \"path\": \"/proc/self/cwd/grain.txt\"}'"));
+  EXPECT_EQ(two.status, 2);
+  EXPECT_THAT(two.err, HasSubstr("  files: found /proc/self/cwd/grain.txt, checksum "));
 }
 
 TEST_F(Mpi, WhatOneRankLacksIsReportedWithItsNumber) {

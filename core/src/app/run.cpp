@@ -10,6 +10,7 @@
 #include "app/idle_settings.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
+#include "app/rank_facts.hpp"
 #include "app/run_jobs.hpp"
 #include "app/run_ranks.hpp"
 #include "app/run_setup.hpp"
@@ -193,20 +194,6 @@ void print_speed(const RunSummary& summary) {
   std::cout << ")\n";
 }
 
-/// What all ranks of a run must have alike.
-std::vector<RankFact> facts_to_agree_on(const RunJob& job) {
-  const SceneDescription& description = *job.opened->scene.description;
-  const BuildFacts& build = build_facts();
-  std::string plugins;
-  for (const PluginUsed& one : plugins_used(description, *job.opened->registry))
-    plugins += (plugins.empty() ? "" : ", ") + one.kind + '/' + one.name + ' ' + one.version + " for " +
-               one.tag.instruction_set;
-  return {{"grit",
-           std::string(build.version) + ' ' + build.revision + ", " + build.compiler + ", " + build.instruction_set},
-          {"plugins", plugins},
-          {"description", resolved(description).dump()}};
-}
-
 /// A checkpoint as bytes, or that there is none.
 std::vector<std::byte> bytes_of(const std::optional<LastCheckpoint>& last) {
   Archive archive;
@@ -226,7 +213,7 @@ ExitStatus follow(const Options& options, RunRanks& ranks) {
     return ExitStatus::done;
   });
   if (opened != ExitStatus::done) failure = ranks.messages();
-  const auto given = ranks.agree(failure.empty() ? facts_to_agree_on(job) : no_facts, failure, {});
+  const auto given = ranks.agree(failure.empty() ? facts_to_agree_on(job) : std::vector<RankFact>(), failure, {});
   if (!given || given->empty()) return ExitStatus::done;  // the first one reports why
   Archive archive(*given);
   bool resumes = false;
@@ -398,7 +385,7 @@ ExitStatus run_command(const Options& options) {
   if (!ranks.several()) return run_jobs(options, ranks);
   const ExitStatus status = report([&] { return run_jobs(options, ranks); });
   // Ranks wait for the first one until it has compared them.
-  if (ranks.is_awaited()) ranks.agree(no_facts, "failed", {});
+  if (ranks.is_awaited()) ranks.agree({}, "failed", {});
   return ranks.end(status);
 }
 

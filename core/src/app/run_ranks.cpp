@@ -9,9 +9,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <thread>
 
 #include "grit/error.hpp"
+#include "grit/toolkit/text_file.hpp"
 #include "plugins/loader.hpp"
 
 namespace grit {
@@ -46,8 +48,6 @@ Communicator* open_mpi() {
   return library.get<Communicator*()>("grit_mpi")();
 }
 
-constexpr std::size_t longest_shown = 500;
-
 std::string host() {
   std::array<char, 256> name{};
   ::gethostname(name.data(), name.size() - 1);
@@ -65,6 +65,62 @@ std::vector<std::string> texts(Ranks& ranks, const std::string& own) {
     next += static_cast<std::ptrdiff_t>(length);
   }
   return texts;
+}
+
+constexpr char unit_separator = '\x1f', record_separator = '\x1e';
+
+/// Facts as one text.
+std::string joined(const std::vector<RankFact>& facts) {
+  std::string text;
+  for (const RankFact& fact : facts) text += fact.what + unit_separator + fact.text + record_separator;
+  return text;
+}
+
+std::vector<std::string> parts_of(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+std::map<std::string, std::string> facts_of(const std::string& text) {
+  std::map<std::string, std::string> facts;
+  for (const std::string& fact : parts_of(text, record_separator)) {
+    const std::size_t end = fact.find(unit_separator);
+    facts[fact.substr(0, end)] = fact.substr(end + 1);
+  }
+  return facts;
+}
+
+/// The first lines that only one of two texts has.
+std::string lines_beyond(const std::string& text, const std::string& other) {
+  constexpr std::size_t most = 3, longest = 200;
+  const std::vector<std::string> known = parts_of(other, '\n');
+  std::string found;
+  std::size_t count = 0;
+  for (const std::string& line : parts_of(text, '\n')) {
+    if (std::ranges::find(known, line) != known.end()) continue;
+    if (++count > most) return found + " …";
+    // As in JSON: indented, with a comma.
+    const std::size_t first = std::min(line.size(), line.find_first_not_of(' ')),
+                      last = line.size() - line.ends_with(',');
+    found += (found.empty() ? "" : ", ") + visible_text(line.substr(first, std::max(first, last) - first), longest);
+  }
+  return found.empty() ? "nothing" : found;
+}
+
+/// In which facts a rank differs from the first one; empty if in none.
+std::string differences(const std::map<std::string, std::string>& own,
+                        const std::map<std::string, std::string>& first) {
+  std::string text;
+  for (const auto& [what, expected] : first) {
+    const auto found = own.find(what);
+    const std::string there = found != own.end() ? found->second : "";
+    if (there != expected)
+      text += "  " + what + ": found " + lines_beyond(there, expected) + "; rank 0 has " +
+              lines_beyond(expected, there) + '\n';
+  }
+  return text.empty() ? "" : "differs from rank 0; use the same grit, plugins and files on all hosts\n" + text;
 }
 
 }  // namespace
@@ -94,17 +150,12 @@ std::string RunRanks::messages() {
 std::optional<std::vector<std::byte>> RunRanks::agree(const std::vector<RankFact>& facts, const std::string& failure,
                                                       std::vector<std::byte> given) {
   awaited_ = false;
-  const std::vector<std::string> hosts = texts(ranks_, host()), failures = texts(ranks_, failure);
-  std::vector<std::vector<std::string>> all;  // by fact, of each rank
-  for (const RankFact& fact : facts) all.push_back(texts(ranks_, fact.text));
+  const std::vector<std::string> hosts = texts(ranks_, host()), failures = texts(ranks_, failure),
+                                 all = texts(ranks_, joined(facts));
   bool agrees = true;
   for (unsigned rank = 0; rank < count(); ++rank) {
     std::string why = failures[rank].starts_with("grit: ") ? failures[rank].substr(6) : failures[rank];
-    for (std::size_t f = 0; f < facts.size() && why.empty(); ++f)
-      if (all[f][rank] != all[f][0])
-        why = "has another " + facts[f].what + " than rank 0" +
-              (all[f][0].size() < longest_shown ? ": found " + all[f][rank] + ", there " + all[f][0] : "") +
-              "; use the same grit, plugins and files on all hosts\n";
+    if (why.empty() && failures[0].empty()) why = differences(facts_of(all[rank]), facts_of(all[0]));
     if (why.empty()) continue;
     agrees = false;
     // A failure of the first rank, which others have had alike, is reported as in one process.

@@ -17,8 +17,6 @@ namespace grit {
 struct RankFact {
   std::string what, text;
 };
-/// Of a rank that cannot begin.
-inline const std::vector<RankFact> no_facts(3);
 
 /// Ranks as `grit run` needs them. The first one writes results and messages; the others write only why they fail
 /// alone.

@@ -7,14 +7,17 @@ namespace grit {
 void Halo::build(const ContactTable& pairs, const Ranks& ranks) {
   sent_.assign(ranks.count(), {}), received_.assign(ranks.count(), {});
   out_.resize(ranks.count()), in_.resize(ranks.count());
+  pairs_ = shared_pairs_ = 0;
   if (!ranks.several()) return;
   const auto add = [&](std::uint32_t own, std::uint32_t other) {
     const unsigned rank = ranks.cuts().owner_of_body(other);
     sent_[rank].push_back(own), received_[rank].push_back(other);
+    ++shared_pairs_;
   };
   // Both ranks of a pair have it.
   pairs.each_candidate([&](std::size_t c) {
     const std::uint32_t a = pairs.a(c), b = pairs.b(c);
+    ++pairs_;
     if (!ranks.owns_body(a)) add(b, a);
     else if (!ranks.owns_body(b)) add(a, b);
   });
@@ -24,6 +27,12 @@ void Halo::build(const ContactTable& pairs, const Ranks& ranks) {
       const auto doubles = std::ranges::unique(list);
       list.erase(doubles.begin(), doubles.end());
     }
+}
+
+std::size_t Halo::bodies() const {
+  std::size_t count = 0;
+  for (const auto& list : received_) count += list.size();
+  return count;
 }
 
 template <class Pack, class Unpack>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +68,10 @@ class Kernel {
   /// Number of pairs in contact, of all ranks.
   std::size_t contact_count() const;
   double body_steps() const { return stepper_.body_steps(); }
+  /// All ranks must call this before sharing().
+  void collect_sharing() { stepper_.collect_sharing(); }
+  /// None with one rank.
+  std::optional<Sharing> sharing() const { return ranks() > 1 ? std::optional(stepper_.sharing()) : std::nullopt; }
   unsigned threads() const { return passes_.threads(); }
   std::vector<PhaseTime> phases() const { return passes_.phases(); }
   Model model() const;

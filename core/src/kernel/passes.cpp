@@ -1,5 +1,8 @@
 #include "kernel/passes.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace grit {
 
 Passes::Passes(unsigned threads, Communicator* ranks)
@@ -17,17 +20,28 @@ std::vector<PhaseTime> Passes::phases() const {
   return phases;
 }
 
-void Passes::divide() {
+void Passes::collect_times() {
   if (!ranks_.several()) return;
   std::vector<std::array<double, step_phases>> seconds;
   for (const ChunkResult& chunk : chunks_) seconds.push_back(chunk.seconds);
   ranks_.complete(seconds);
-  std::vector<double> weights;
+  counted_.resize(chunks_.size()), recent_.resize(chunks_.size());
+  std::vector<double> of_ranks(ranks_.count());
   for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
     chunks_[chunk].seconds = seconds[chunk];
-    weights.push_back(std::accumulate(seconds[chunk].begin(), seconds[chunk].end(), 0.0));
+    const double total = std::accumulate(seconds[chunk].begin(), seconds[chunk].end(), 0.0);
+    const double since = total - std::exchange(counted_[chunk], total);
+    recent_[chunk] += since, of_ranks[ranks_.cuts().owner(chunk)] += since;
   }
-  ranks_.divide(weights);
+  busiest_ += std::ranges::max(of_ranks);
+  mean_ += std::accumulate(of_ranks.begin(), of_ranks.end(), 0.0) / ranks_.count();
+}
+
+void Passes::divide() {
+  if (!ranks_.several()) return;
+  collect_times();
+  ranks_.divide(recent_);
+  for (double& recent : recent_) recent *= 0.5;
 }
 
 void Passes::complete_results(bool energies) {
@@ -52,6 +66,11 @@ void Passes::serialize(Archive& archive, std::size_t bodies) {
   for (PhaseTime& phase : phases_) archive(phase.seconds, phase.parallel);
   resize(bodies);
   for (ChunkResult& chunk : chunks_) archive(chunk.seconds);
+  if (!archive.restoring()) return;
+  recent_.clear();
+  for (const ChunkResult& chunk : chunks_)
+    recent_.push_back(std::accumulate(chunk.seconds.begin(), chunk.seconds.end(), 0.0));
+  counted_ = recent_;
 }
 
 }  // namespace grit

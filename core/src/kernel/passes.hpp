@@ -57,8 +57,12 @@ class Passes {
   std::vector<ChunkResult>& chunks() { return chunks_; }
   const std::vector<ChunkResult>& chunks() const { return chunks_; }
   void resize(std::size_t bodies) { chunks_.resize(chunks_of(bodies)), ranks_.resize(chunks_.size()); }
-  /// Divides the chunks among the ranks by their computing time so far.
+  /// Divides the chunks among the ranks by their recent computing time.
   void divide();
+  /// Completes the computing times of chunks.
+  void collect_times();
+  /// Computing time of the busiest rank over the mean, less 1, until times were last collected or chunks divided.
+  double imbalance() const { return mean_ > 0 ? busiest_ / mean_ - 1 : 0; }
 
   /// Shares work(chunk, laps) among the threads, for some chunks; times one in eight.
   template <class Work>
@@ -123,6 +127,10 @@ class Passes {
   Ranks ranks_;
   Team team_;
   std::vector<ChunkResult> chunks_;
+  // Of each chunk [s]: computing time until times were last collected, and recently: since the last division with half
+  // of what it was then.
+  std::vector<double> counted_, recent_;
+  double busiest_ = 0, mean_ = 0;  // computing times of ranks, summed over collections [s]
   std::vector<PhaseTime> phases_;
   PhaseTime passes_;  // of all calls of each()
 };

@@ -51,6 +51,7 @@ void Stepper::mark_removed(std::vector<bool>& leaves) const {
 }
 
 void Stepper::rebuild() {
+  sharing_.steps_end(passes_.ranks(), state_.time.step);
   check_periods(state_);
   repeat_walls(state_);
   complete_bodies(state_, passes_);
@@ -105,6 +106,12 @@ void Stepper::rebuild() {
   arrivals_.clear();
   view_.invalidate();  // engines may have read bodies in their former order
   time_step_.set(state_, view_, bounds_, passes_);
+  sharing_.search_ends(passes_.ranks(), state_.halo, bodies.count());
+}
+
+void Stepper::collect_sharing() {
+  sharing_.steps_end(passes_.ranks(), state_.time.step);
+  passes_.collect_times();
 }
 
 void Stepper::search_at_walls() {

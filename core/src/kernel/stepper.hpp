@@ -9,6 +9,7 @@
 #include "kernel/cell_servo.hpp"
 #include "kernel/displacement_bounds.hpp"
 #include "kernel/energy_guard.hpp"
+#include "kernel/sharing.hpp"
 #include "kernel/time_step_control.hpp"
 #include "kernel/world_view.hpp"
 
@@ -39,6 +40,9 @@ class Stepper {
   const TimeStepControl& time_step() const { return time_step_; }
   /// Particle-steps so far.
   double body_steps() const { return body_steps_; }
+  /// All ranks must call collect_sharing() before.
+  void collect_sharing();
+  Sharing sharing() const { return sharing_.sharing(passes_.imbalance()); }
 
   void serialize(Archive& archive);
   /// After the state has been restored. Throws Error unless this fits it.
@@ -92,6 +96,7 @@ class Stepper {
   std::vector<WallLoad> loads_;
   std::uint64_t forces_step_ = ~0ull;  // step at which contacts were last updated
   double body_steps_ = 0;
+  SharingRecord sharing_;
 };
 
 }  // namespace grit

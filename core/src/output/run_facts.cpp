@@ -1,26 +1,16 @@
 #include "output/run_facts.hpp"
 
 #include <algorithm>
-#include <boost/crc.hpp>
-#include <fstream>
 #include <iterator>
 
 #include "input/document.hpp"
 #include "plugins/build_facts.hpp"
+#include "storage/file_checksum.hpp"
 
 namespace grit {
 namespace {
 
 Description layout(const Layout& layout) { return {{"size", layout.size}, {"alignment", layout.alignment}}; }
-
-/// Checksum of a file, as two builds may report the same facts; that of no bytes for built-in components.
-std::uint32_t checksum(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  boost::crc_32_type sum;
-  sum.process_bytes(bytes.data(), bytes.size());
-  return sum.checksum();
-}
 
 /// An unexpanded description with further assignments; null if they refer to what the scenario expands to.
 Description with_sets(Description unexpanded, const std::vector<std::string>& sets) {
@@ -54,7 +44,8 @@ Description plugin_facts(const PluginUsed& used) {
             {"compiler", tag.compiler},
             {"library_abi", tag.library_abi},
             {"instruction_set", tag.instruction_set},
-            {"checksum", checksum(used.file)},
+            // Two builds may report the same facts. That of no bytes for built-in components.
+            {"checksum", file_checksum(used.file)},
             {"row", layout(tag.row)},
             {"contact_row", layout(tag.contact_row)},
             {"body_sum", layout(tag.body_sum)},

@@ -47,6 +47,14 @@ double cpu_seconds() {
              : 0;
 }
 
+Description traffic_facts(const Traffic& traffic) {
+  return {{"messages", traffic.messages},
+          {"bytes", traffic.bytes},
+          {"gathers", traffic.gathers},
+          {"gathered_bytes", traffic.gathered},
+          {"seconds", traffic.seconds}};
+}
+
 }  // namespace
 
 RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std::move(path)) {
@@ -64,6 +72,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"seed", facts.seed},
            {"threads", facts.threads},
            {"ranks", facts.ranks},
+           {"sharing", nullptr},
            {"stage", ""},
            {"time", 0.0},
            {"steps", 0},
@@ -142,6 +151,12 @@ void RunJson::finish(const World& world, const RunSummary& summary) {
   json_["bodies"] = summary.bodies;
   json_["threads"] = summary.threads;
   json_["ranks"] = summary.ranks;
+  if (summary.sharing)
+    json_["sharing"] = {{"imbalance", summary.sharing->imbalance},
+                        {"neighbours", summary.sharing->neighbours},
+                        {"shared_pairs", summary.sharing->shared_pairs},
+                        {"step", traffic_facts(summary.sharing->step)},
+                        {"search", traffic_facts(summary.sharing->search)}};
   json_["time_step_s"] = summary.time_step;
   json_["critical_time_step_s"] = summary.critical_time_step;
   json_["contacts_per_body"] = summary.contacts_per_body;

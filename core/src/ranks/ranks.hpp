@@ -9,6 +9,8 @@
 
 #include "ranks/communicator.hpp"
 #include "ranks/cuts.hpp"
+#include "ranks/traffic.hpp"
+#include "threads/stopwatch.hpp"
 
 namespace grit {
 
@@ -94,8 +96,12 @@ class Ranks {
   void exchange(std::span<const Communicator::Message> sent, std::span<const Communicator::Message> received) {
     if (!several()) return;
     refuse_alone();
+    const Stopwatch watch(traffic_.seconds);
+    for (const Communicator::Message& one : sent)
+      ++traffic_.messages, traffic_.bytes += static_cast<double>(one.bytes.size());
     all_->exchange(sent, received);
   }
+  const Traffic& traffic() const { return traffic_; }
 
   /// While it lives, one rank does what others do not, such as writing: what needs others is a defect, and throws.
   class Alone {
@@ -122,6 +128,8 @@ class Ranks {
   std::vector<std::size_t> starts_of(std::size_t own);
   void gather(std::span<std::byte> all, const std::vector<std::size_t>& starts) {
     refuse_alone();
+    const Stopwatch watch(traffic_.seconds);
+    ++traffic_.gathers, traffic_.gathered += static_cast<double>(all.size() - (starts[rank() + 1] - starts[rank()]));
     all_->gather(all, starts);
   }
   void refuse_alone() const;
@@ -129,6 +137,7 @@ class Ranks {
   Communicator* all_;
   Cuts cuts_;  // until bodies are divided, the last rank has all
   int alone_ = 0;
+  Traffic traffic_;
 };
 
 }  // namespace grit

@@ -216,9 +216,11 @@ std::vector<Fact> cost_facts(const RunResults& run) {
   if (const auto wall = number(run, "/wall_s"); wall && has_progress) {
     const auto threads = number(run, "/threads");
     const double ranks = number(run, "/ranks").value_or(1);
+    const auto imbalance = number(run, "/sharing/imbalance");
     facts.push_back({"run time", cost_text(*wall),
                      threads ? fmt::format("{}{:g} thread{}", ranks > 1 ? fmt::format("{:g} ranks of ", ranks) : "",
-                                           *threads, *threads == 1 ? "" : "s")
+                                           *threads, *threads == 1 ? "" : "s") +
+                                   (imbalance ? fmt::format(", imbalance {:.1f} %", 100 * *imbalance) : "")
                              : "",
                      false, "took " + cost_text(*wall)});
   }

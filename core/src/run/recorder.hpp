@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "grit/probe.hpp"
 #include "grit/world.hpp"
 #include "kernel/model.hpp"
+#include "kernel/sharing.hpp"
 
 namespace grit {
 
@@ -53,6 +55,7 @@ struct RunSummary {
   double particle_steps_per_second = 0;
   std::size_t rebuilds = 0;  ///< of the neighbour lists
   unsigned threads = 1, ranks = 1;  ///< threads of each rank
+  std::optional<Sharing> sharing;   ///< among ranks
   std::vector<PhaseTime> phases;
   std::vector<ProbeTime> probes;
   Model model;

@@ -396,6 +396,7 @@ std::string StageRunner::reached() const {
 void StageRunner::finish(RunSummary& summary) {
   sample(true);
   if (!scene_.description->output.frames.never()) frame();
+  kernel_.collect_sharing();
   fill(summary);
   if (summary.status == "done") {
     summary.warnings = kernel_.blocked_streams();
@@ -419,6 +420,7 @@ void StageRunner::fill(RunSummary& summary) const {
   summary.particle_steps_per_second = stepping_ > 0 ? kernel_.body_steps() / stepping_ : 0;
   summary.rebuilds = kernel_.state().lists.rebuilds();
   summary.threads = kernel_.threads(), summary.ranks = kernel_.ranks();
+  summary.sharing = kernel_.sharing();
   summary.model = kernel_.model();
   summary.phases = kernel_.phases();
   double in_phases = 0;
