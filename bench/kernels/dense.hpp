@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "contact/spatial_order.hpp"
 #include "support/packing.hpp"
 #include "support/scene.hpp"
 
@@ -64,7 +65,7 @@ class Dense {
   void rebuild() {
     Ranks alone;
     alone.resize(chunks_of(bodies_.count()));
-    pairs_.rebuild(bodies_, search_, false, law_->state(), {}, alone, team_);
+    pairs_.rebuild(bodies_, search_, false, law_->state(), {}, {}, alone, team_);
   }
   void contacts() {
     for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk) {

@@ -152,7 +152,7 @@ TEST_F(TimeStep, WithoutBodiesIsThatOfTheGroups) {
 TEST_F(TimeStep, StaysOnceAllBodiesHaveLeft) {
   const double before = set();
   state_.bodies = {};
-  search(state_, passes_, std::span<const std::uint32_t>());
+  search(state_, passes_, Renumbering({}, 2));
   set();
   state_.lists.advance_walls(radius);
   control_.follow(state_, view_, bounds_, passes_);

@@ -70,14 +70,14 @@ inline void set_velocity(State& state, std::size_t body, const Vec3& v) {
   row = {v.x(), v.y(), v.z(), row.w};
 }
 
-/// Updates neighbour lists and contacts. `order`: as in ContactTable::rebuild().
-inline void search(State& state, Passes& passes, std::optional<std::span<const std::uint32_t>> order = {}) {
+/// Updates neighbour lists and contacts.
+inline void search(State& state, Passes& passes, const Renumbering& now = {}) {
   passes.resize(state.bodies.count());
   state.lists.rebuild(state.bodies, state.cell, state.statistics, state.reaches(), state.time.dt, 0, passes);
-  state.pairs.rebuild(state.bodies, state.lists.search(), state.cell.periodic(), state.settings.fields, order,
+  state.pairs.rebuild(state.bodies, state.lists.search(), state.cell.periodic(), state.settings.fields, now, {},
                       passes.ranks(), passes.team());
   state.wall_contacts.rebuild(state.bodies, state.group, state.surfaces, state.lists.skins(), state.settings.fields,
-                              order, passes.ranks(), passes.team());
+                              now, passes.ranks(), passes.team());
 }
 
 /// Evaluates the contacts of the only chunk.

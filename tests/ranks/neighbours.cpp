@@ -6,6 +6,7 @@
 
 #include "contact/chunk_boxes.hpp"
 #include "contact/search.hpp"
+#include "contact/spatial_order.hpp"
 
 namespace grit::test {
 namespace {
@@ -58,7 +59,9 @@ TEST_P(Neighbours, BelowAreThoseThatOthersFind) {
   ASSERT_GT(own.size(), 100u);
   EXPECT_EQ(sorted(own), sorted(theirs));
 
-  const ChunkBoxes boxes(bodies, cell, skins, team);
+  Ranks alone;
+  alone.resize(chunks_of(count));
+  const ChunkBoxes boxes(bodies, cell, skins, alone, team);
   const auto near = boxes.near_below(3, chunks_of(count));
   for (const Candidate& c : own) {
     EXPECT_TRUE(boxes.near(c.a / chunk_bodies, c.b / chunk_bodies));
@@ -69,18 +72,34 @@ TEST_P(Neighbours, BelowAreThoseThatOthersFind) {
 INSTANTIATE_TEST_SUITE_P(Cells, Neighbours, testing::Values(Vec3(0, 0, 0), Vec3(0.3, 0.1, -0.2)),
                          [](const auto& one) { return one.index == 0 ? "Straight" : "Skewed"; });
 
+ChunkBoxes boxes_of(const Bodies& bodies, const Cell& cell) {
+  Team team(1);
+  Ranks alone;
+  alone.resize(chunks_of(bodies.count()));
+  return {bodies, cell, even_skins(bodies), alone, team};
+}
+
 TEST(ChunkBoxes, TellFarChunksFromNearOnes) {
   Bodies bodies;
   for (const double at : {0.0, 5.0, 9.9})
     for (std::size_t i = 0; i < chunk_bodies; ++i) bodies.add({at, 0, 0}, 0.1, 1, 1, 0);
   bodies.finish({});
-  Team team(1);
   const Cell open{Vec3::Constant(-100), Vec3::Constant(100), {false, false, false}, Vec3::Zero()};
   const Cell along_x{Vec3(0, -100, -100), Vec3(10, 100, 100), {true, false, false}, Vec3::Zero()};
-  EXPECT_FALSE(ChunkBoxes(bodies, open, even_skins(bodies), team).near(0, 2));
-  EXPECT_TRUE(ChunkBoxes(bodies, along_x, even_skins(bodies), team).near(0, 2)) << "across the periodic side";
-  EXPECT_FALSE(ChunkBoxes(bodies, along_x, even_skins(bodies), team).near(0, 1));
-  EXPECT_EQ(ChunkBoxes(bodies, along_x, even_skins(bodies), team).near_below(2, 3), std::vector<std::size_t>{0});
+  EXPECT_FALSE(boxes_of(bodies, open).near(0, 2));
+  EXPECT_TRUE(boxes_of(bodies, along_x).near(0, 2)) << "across the periodic side";
+  EXPECT_FALSE(boxes_of(bodies, along_x).near(0, 1));
+  EXPECT_EQ(boxes_of(bodies, along_x).near_below(2, 3), std::vector<std::size_t>{0});
+}
+
+TEST(ChunkBoxes, FollowTheImagesOfASkewedCell) {
+  Bodies bodies;
+  for (const Vec3& at : {Vec3(5, 5, 0.05), Vec3(8, 5, 9.95), Vec3(5, 5, 9.95)})
+    for (std::size_t i = 0; i < chunk_bodies; ++i) bodies.add(at, 0.1, 1, 1, 0);
+  bodies.finish({});
+  const Cell skewed{Vec3::Zero(), Vec3::Constant(10), {true, true, true}, Vec3::Zero(), Vec3::Zero(), Vec3(0, 3, 0)};
+  EXPECT_TRUE(boxes_of(bodies, skewed).near(0, 1)) << "the image across z is 3 along x";
+  EXPECT_FALSE(boxes_of(bodies, skewed).near(0, 2));
 }
 
 }  // namespace

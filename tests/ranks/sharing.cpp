@@ -48,8 +48,9 @@ TEST(Sharing, CountsWhatTwoRanksHaveTwice) {
     search.build(bodies, open, skins, team);
     Ranks ranks(&all);
     ranks.divide(std::vector<double>(chunks_of(count), 1.0));
+    const ChunkBoxes boxes(bodies, open, skins, ranks, team);
     ContactTable pairs;
-    pairs.rebuild(bodies, search, false, {}, {}, ranks, team);
+    pairs.rebuild(bodies, search, false, {}, {}, boxes, ranks, team);
     Halo halo;
     halo.build(pairs, ranks);
     EXPECT_EQ(halo.bodies(), 1u);

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <random>
 #include <string_view>
 
 #include "input/scene.hpp"
 #include "simulation/parts.hpp"
 #include "simulation/standard_registry.hpp"
+#include "support/scene.hpp"
 #include "support/thread_ranks.hpp"
 
 namespace grit::test {
@@ -25,18 +27,28 @@ Bytes without_times(Bytes state) {
   return state;
 }
 
-/// A simulation of a description of sims/.
+const std::shared_ptr<const Registry>& registry() {
+  static const std::shared_ptr<const Registry> all = standard_registry({}, "test");
+  return all;
+}
+
+Document of_sims(const std::string& file) {
+  return load_document(std::filesystem::path(GRIT_SOURCE_DIR) / "sims" / file, {}, *registry(), "test");
+}
+
 struct SharedRun {
-  explicit SharedRun(const std::string& file, Communicator* ranks = nullptr) {
-    const std::shared_ptr<const Registry> registry = standard_registry({}, "test");
-    const auto path = std::filesystem::path(GRIT_SOURCE_DIR) / "sims" / file;
-    const auto opened =
-        std::make_shared<OpenedScene>(registry, read_scene(load_document(path, {}, *registry, "test"), *registry));
+  explicit SharedRun(const Document& document, Communicator* ranks = nullptr) {
+    const auto opened = std::make_shared<OpenedScene>(registry(), read_scene(document, *registry()));
     parts = std::make_unique<Simulation::Parts>(opened, opened->prepare({}), 1, nullptr, ranks);
   }
-  void steps(std::size_t count) {
+  explicit SharedRun(const std::string& file, Communicator* ranks = nullptr) : SharedRun(of_sims(file), ranks) {}
+  /// `search_every`: 0: where one is due.
+  void steps(std::size_t count, std::size_t search_every = 0) {
     parts->start();
-    for (; count > 0 && !parts->runner.done(); --count) static_cast<void>(parts->next(false));
+    for (; count > 0 && !parts->runner.done(); --count) {
+      if (search_every > 0 && count % search_every == 0) parts->kernel.request_rebuild();
+      static_cast<void>(parts->next(false));
+    }
   }
   Bytes state() {
     Archive archive;
@@ -63,6 +75,67 @@ TEST_P(SameBits, OnThreeRanks) {
     for (std::size_t c = 0; c < found.size(); ++c)
       ASSERT_TRUE(found[c].a == contacts[c].a && found[c].b == contacts[c].b && found[c].force == contacts[c].force);
   });
+}
+
+// Every eighth search sorts bodies and divides them among the ranks anew, by measured times.
+TEST_P(SameBits, WhenBodiesMigrate) {
+  constexpr std::size_t steps = 90, search_every = 2;
+  SharedRun alone(GetParam());
+  alone.steps(steps, search_every);
+  const Bytes expected = alone.state();
+  on_ranks(4, [&](Communicator& all) {
+    SharedRun shared(GetParam(), &all);
+    shared.steps(steps, search_every);
+    EXPECT_TRUE(shared.state() == expected) << "rank " << all.rank();
+  });
+}
+
+/// Grains that touch, move against each other and leave through an open bottom. Some touch a wall.
+Document dense_flow() {
+  constexpr double radius = 1e-3, spacing = 1.96e-3;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> share(-1, 1);
+  std::vector<Grain> grains;
+  for (int x = 0; x < 14; ++x)
+    for (int y = 0; y < 10; ++y)
+      for (int z = 0; z < 12; ++z) {
+        const Vec3 place(x + 0.5 + 0.02 * share(random), y + 0.5 + 0.02 * share(random), z + 0.2);
+        const Vec3 velocity(share(random), share(random), -2 - x / 7.0);
+        grains.push_back({spacing * place, radius * (1 + 0.02 * share(random)), velocity, 100 * velocity});
+      }
+  Description flow = description("linear-rolling",
+                                 {{"density", 2600},
+                                  {"contact_modulus", 1e6},
+                                  {"friction_angle", 0.5},
+                                  {"rolling_stiffness", 0.2},
+                                  {"rolling_limit", 0.2}},
+                                 grains);
+  flow["domain"] = {{"low", {-spacing, 0, 0}},
+                    {"high", {15 * spacing, 10 * spacing, 20 * spacing}},
+                    {"periodic", {false, true, false}},
+                    {"open_sides", {"-z", "+x", "+z"}}};
+  flow["walls"]["left"] = plane(Vec3::Zero(), Vec3::UnitX());
+  flow["guards"]["overlap"] = 0.9;
+  flow["stages"][0]["until"]["value"] = 1000;
+  return {flow, "test"};
+}
+
+// Histories of contacts go with their bodies; some bodies leave.
+TEST(DenseFlow, HasTheSameBitsWhenBodiesMigrate) {
+  constexpr std::size_t steps = 120, search_every = 3;
+  const Document flow = dense_flow();
+  SharedRun alone(flow);
+  alone.steps(steps, search_every);
+  const Bytes expected = alone.state();
+  EXPECT_LT(alone.parts->kernel.world().ids().size(), 1600u);
+  EXPECT_GT(alone.parts->kernel.world().contacts().size(), 1600u);
+  EXPECT_FALSE(alone.parts->kernel.world().contacts_with_walls().empty());
+  for (const unsigned count : {2u, 5u})
+    on_ranks(count, [&](Communicator& all) {
+      SharedRun shared(flow, &all);
+      shared.steps(steps, search_every);
+      EXPECT_TRUE(shared.state() == expected) << "rank " << all.rank() << " of " << count;
+    });
 }
 
 // Walls with servos; a periodic cell that deforms by its stresses; clumps; gravity and an outlet.

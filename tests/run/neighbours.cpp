@@ -6,6 +6,8 @@
 #include <set>
 #include <tuple>
 
+#include "contact/search.hpp"
+#include "contact/spatial_order.hpp"
 #include "support/packing.hpp"
 
 namespace grit::test::neighbours_tests {

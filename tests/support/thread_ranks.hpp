@@ -58,6 +58,18 @@ class ThreadRank final : public Communicator {
         if (r != rank_) copy(shown[r].front().bytes, part(r));
     });
   }
+  void sum(std::span<std::uint64_t> numbers) override {
+    const std::vector<std::uint64_t> own(numbers.begin(), numbers.end());
+    auto* const bytes = const_cast<std::byte*>(reinterpret_cast<const std::byte*>(own.data()));
+    board_.share(rank_, {{rank_, {bytes, numbers.size_bytes()}}}, [&](const auto& shown) {
+      std::ranges::fill(numbers, 0);
+      for (const auto& messages : shown) {
+        std::vector<std::uint64_t> theirs(numbers.size());
+        copy(messages.front().bytes, std::as_writable_bytes(std::span(theirs)));
+        for (std::size_t k = 0; k < theirs.size(); ++k) numbers[k] += theirs[k];
+      }
+    });
+  }
   void exchange(std::span<const Message> sent, std::span<const Message> received) override {
     board_.share(rank_, {sent.begin(), sent.end()}, [&](const auto& shown) {
       for (const Message& one : received) {

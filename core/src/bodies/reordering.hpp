@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,5 +21,27 @@ inline std::vector<std::uint32_t> present_indices(std::span<const std::uint32_t>
   for (std::size_t i = 0; i < order.size(); ++i) now[order[i]] = static_cast<std::uint32_t>(i);
   return now;
 }
+
+/// The same, where a rank may know some bodies only.
+class Renumbering {
+ public:
+  /// No index has changed.
+  Renumbering() = default;
+  /// As present_indices().
+  Renumbering(std::span<const std::uint32_t> order, std::size_t before) : Renumbering(before) {
+    std::fill_n(now_.get(), before, body_gone);
+    for (std::size_t i = 0; i < order.size(); ++i)
+      if (order[i] < before) now_[order[i]] = static_cast<std::uint32_t>(i);
+  }
+  /// Of `before` bodies, none of which is known yet: each must be set() before it is asked for.
+  explicit Renumbering(std::size_t before) : now_(new std::uint32_t[before]) {}  // pages that are not used cost nothing
+
+  bool changes() const { return now_ != nullptr; }
+  std::uint32_t operator()(std::uint32_t former) const { return changes() ? now_[former] : former; }
+  void set(std::uint32_t former, std::uint32_t now) { now_[former] = now; }
+
+ private:
+  std::unique_ptr<std::uint32_t[]> now_;
+};
 
 }  // namespace grit

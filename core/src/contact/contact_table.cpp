@@ -7,9 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "bodies/reordering.hpp"
 #include "bodies/restored.hpp"
-#include "contact/chunk_boxes.hpp"
 #include "grit/contact/fields.hpp"
 #include "grit/error.hpp"
 
@@ -51,17 +49,10 @@ void check_size(const std::vector<std::size_t>& within, const Candidates& found)
 }  // namespace
 
 void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic,
-                           std::span<const StateField> fields, std::optional<std::span<const std::uint32_t>> order,
+                           std::span<const StateField> fields, const Renumbering& now, const ChunkBoxes& boxes,
                            Ranks& ranks, Team& team) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
-  std::vector<std::uint32_t> now;
-  if (order) {
-    now = present_indices(*order, bodies_);
-  } else {
-    now.resize(bodies_);
-    std::iota(now.begin(), now.end(), 0u);
-  }
   const std::vector<Sent> sent = exchange_histories(now, ranks);
   const auto slots_before = static_cast<std::uint32_t>(a_.size());
   bodies_ = count;
@@ -72,7 +63,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
     for (std::size_t block = 0; block < touching_.size(); ++block)
       for (std::uint32_t mask = touching_[block]; mask != 0; mask &= mask - 1) {
         const auto slot = static_cast<std::uint32_t>(block * block_size + as_index(std::countr_zero(mask)));
-        const std::uint32_t p = now[a_[slot]], q = now[b_[slot]];
+        const std::uint32_t p = now(a_[slot]), q = now(b_[slot]);
         if (p != body_gone && q != body_gone) use(std::min(p, q), Former{std::max(p, q), slot, p > q, nowhere});
       }
     for (std::uint32_t k = 0; k < sent.size(); ++k) {
@@ -88,13 +79,12 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   each_former([&](std::uint32_t lower, const Former& former) { formers[former_start[lower]++] = former; });
   std::move_backward(former_start.begin(), former_start.end() - 1, former_start.end());
   former_start.front() = 0;
-  give_back(now);
 
   const std::size_t chunk_count = chunks_of(count);
   found_.resize(chunk_count), within_.assign(chunk_count, 0), widest_.assign(chunk_count, 0);
   team.each(last_own_ - first_own_, [&](std::size_t k) { find_pairs(first_own_ + k, bodies, search); });
   ranks.complete(widest_);
-  if (ranks.several()) find_pairs_below(bodies, search, team);
+  if (ranks.several()) find_pairs_below(bodies, search, boxes, team);
   check_size(within_, found_);
   chunks_.resize(chunk_count);
   std::uint32_t blocks = 0;
@@ -205,7 +195,7 @@ void ContactTable::find_evaluated() {
       evaluated_.push_back(static_cast<std::uint32_t>(chunk));
 }
 
-std::vector<ContactTable::Sent> ContactTable::exchange_histories(std::span<const std::uint32_t> now, Ranks& ranks) {
+std::vector<ContactTable::Sent> ContactTable::exchange_histories(const Renumbering& now, Ranks& ranks) {
   received_.clear();
   if (whole_) return {};  // all ranks have all pairs
   std::vector<std::vector<Sent>> pairs(ranks.count());
@@ -213,7 +203,7 @@ std::vector<ContactTable::Sent> ContactTable::exchange_histories(std::span<const
   for (const Kind kind : {Kind::within, Kind::across}) {
     const Blocks own = own_blocks(kind);
     each_touching(own.first, own.last, [&](std::size_t c) {
-      const std::uint32_t p = now[a_[c]], q = now[b_[c]];
+      const std::uint32_t p = now(a_[c]), q = now(b_[c]);
       if (p == body_gone || q == body_gone) return;
       const unsigned to = ranks.cuts().owner_of_body(p), other = ranks.cuts().owner_of_body(q);
       const auto send = [&](unsigned rank) {
@@ -245,8 +235,8 @@ void ContactTable::find_pairs(std::size_t chunk, const Bodies& bodies, const Nei
   sort_pairs(chunk, found, range.last);
 }
 
-void ContactTable::find_pairs_below(const Bodies& bodies, const NeighbourSearch& search, Team& team) {
-  const ChunkBoxes boxes(bodies, search.cell(), search.skins(), team);
+void ContactTable::find_pairs_below(const Bodies& bodies, const NeighbourSearch& search, const ChunkBoxes& boxes,
+                                    Team& team) {
   const std::vector<std::size_t> near = boxes.near_below(first_own_, last_own_);
   const auto below = static_cast<std::uint32_t>(first_own_ * chunk_bodies);
   std::vector<std::vector<Candidate>> by_chunk(last_own_ - first_own_);

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "bodies/bodies.hpp"
+#include "bodies/reordering.hpp"
+#include "contact/chunk_boxes.hpp"
 #include "contact/search.hpp"
 #include "contact/skins.hpp"
 #include "grit/contact/contact_law.hpp"
@@ -34,10 +36,9 @@ inline constexpr bool plain_numbers<StateLine> = true;
 /// Both ranks evaluate these and keep their histories.
 class ContactTable {
  public:
-  /// `order[i]` is the old index of the body that now has index i; none if indices have not changed. Bodies that are
-  /// not in it have left: all of them, if it is empty.
+  /// `now`: of the bodies of pairs that this rank has had. `boxes`: of all chunks, if there are several ranks.
   void rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic, std::span<const StateField> fields,
-               std::optional<std::span<const std::uint32_t>> order, Ranks& ranks, Team& team);
+               const Renumbering& now, const ChunkBoxes& boxes, Ranks& ranks, Team& team);
   /// Changes the fields of the contact history; those in both sets are kept.
   void set_fields(std::span<const StateField> fields);
 
@@ -168,6 +169,8 @@ class ContactTable {
   std::size_t touching_count() const;
   /// Memory [bytes].
   std::size_t bytes() const;
+  /// Whether it has the pairs of all ranks.
+  bool is_whole() const { return whole_; }
   /// The whole table, with the pairs of all ranks; all of them must call this.
   ContactTable joined(Ranks& ranks) const;
   /// Of a whole table, what a rank has.
@@ -248,14 +251,14 @@ class ContactTable {
   /// Finds the pairs of an own chunk, sorted as they will be in the table.
   void find_pairs(std::size_t chunk, const Bodies& bodies, const NeighbourSearch& search);
   /// The same for those of own bodies with lower ones of other ranks.
-  void find_pairs_below(const Bodies& bodies, const NeighbourSearch& search, Team& team);
+  void find_pairs_below(const Bodies& bodies, const NeighbourSearch& search, const ChunkBoxes& boxes, Team& team);
   void sort_pairs(std::size_t chunk, std::span<const Candidate> found, std::size_t last);
   /// A pair whose history another rank has sent: present indices of its bodies.
   struct Sent {
     std::uint32_t a, b;
   };
-  /// Sends histories to ranks that will have their pairs and have not had them. `now`: present index by former one.
-  std::vector<Sent> exchange_histories(std::span<const std::uint32_t> now, Ranks& ranks);
+  /// Sends histories to ranks that will have their pairs and have not had them.
+  std::vector<Sent> exchange_histories(const Renumbering& now, Ranks& ranks);
   /// Which chunks are own ones, after they have been divided among ranks.
   void take_chunks(const Ranks& ranks);
   void find_evaluated();

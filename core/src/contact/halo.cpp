@@ -55,6 +55,12 @@ void Halo::exchange(std::vector<double>& by_body, Ranks& ranks) const {
       [&](std::uint32_t i, const double* from) { by_body[i] = *from; }, ranks);
 }
 
+void Halo::exchange(Renumbering& now, Ranks& ranks) const {
+  exchange(
+      1, [&](std::uint32_t i, double* to) { *to = now(i); },
+      [&](std::uint32_t i, const double* from) { now.set(i, static_cast<std::uint32_t>(*from)); }, ranks);
+}
+
 void Halo::exchange(Bodies& bodies, Ranks& ranks) const {
   // Radius, mass and inertia are known.
   const auto each = [&](std::uint32_t i, auto* at, auto copy) {

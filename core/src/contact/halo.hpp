@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bodies/bodies.hpp"
+#include "bodies/reordering.hpp"
 #include "contact/contact_table.hpp"
 #include "ranks/ranks.hpp"
 
@@ -25,6 +26,8 @@ class Halo {
   void exchange(std::vector<double>& by_body, Ranks& ranks) const;
   /// The same of positions, velocities and spins.
   void exchange(Bodies& bodies, Ranks& ranks) const;
+  /// The same of their present indices.
+  void exchange(Renumbering& now, Ranks& ranks) const;
 
  private:
   /// `pack(body, to)` writes so many numbers of a body, `unpack(body, from)` reads them.

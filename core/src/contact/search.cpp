@@ -6,19 +6,11 @@
 #include <limits>
 #include <numeric>
 
+#include "contact/spatial_order.hpp"
 #include "grit/contact/lanes.hpp"
 
 namespace grit {
 namespace {
-
-std::uint64_t spread(std::uint64_t x) {  // moves the bits of x to every third position
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffff;
-  x = (x | x << 16) & 0x1f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
-}
 
 /// Positive, and at most `gap` if that is positive.
 float rounded_down(double gap) {
@@ -26,94 +18,10 @@ float rounded_down(double gap) {
   return std::max(near > gap ? std::nextafter(near, 0.0f) : near, std::numeric_limits<float>::min());
 }
 
-struct Extent {
-  double smallest = std::numeric_limits<double>::max(), largest = 0;  // radii
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
-
-  void add(const Extent& other) {
-    smallest = std::min(smallest, other.smallest), largest = std::max(largest, other.largest);
-    low = low.cwiseMin(other.low), high = high.cwiseMax(other.high);
-  }
-};
-
-/// Radii of the bodies, the periodic cell along periodic axes, and the extent of the centres along the others.
-Extent extent(const Bodies& bodies, const Cell& cell, Team& team) {
-  std::vector<Extent> parts(chunks_of(bodies.count()));
-  team.each(parts.size(), [&](std::size_t chunk) {
-    const ChunkRange range(chunk, bodies.count());
-    for (std::size_t i = range.first; i < range.last; ++i) {
-      const Row& body = bodies.position[i];
-      parts[chunk].add({body.w, body.w, xyz(body), xyz(body)});
-    }
-  });
-  Extent all;
-  for (const Extent& part : parts) all.add(part);
-  for (int k = 0; k < 3; ++k)
-    if (cell.periodic[as_index(k)]) all.low[k] = cell.low[k], all.high[k] = cell.high[k];
-  return all;
-}
-
-/// Cells of at least `width`, but not many more than bodies, even if a body is far away.
-std::array<int, 3> cells(const Vec3& length, double width, std::size_t bodies) {
-  const double most = 4.0 * static_cast<double>(bodies) + 64;
-  std::array<int, 3> size{};
-  for (;; width *= 1.5) {
-    double total = 1;
-    for (int k = 0; k < 3; ++k) {
-      const double fitting = std::floor(length[k] / width);
-      const double count = fitting > 1 ? std::min(fitting, 2e6) : 1;  // one of a length that is not a number
-      size[as_index(k)] = static_cast<int>(count);
-      total *= count;
-    }
-    if (total <= most) return size;
-  }
-}
-
 /// By how many periods a cell of the grid lies beyond it, if the period has `cells`.
 int periods_beyond(int place, int cells) { return place >= 0 ? place / cells : -((cells - 1 - place) / cells); }
 
 }  // namespace
-
-std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell, Team& team) {
-  const std::size_t count = bodies.count();
-  std::vector<std::uint32_t> order(count);
-  if (order.empty()) return order;
-  const Extent box = extent(bodies, cell, team);
-  const Vec3 length = box.high - box.low;
-  const auto size = cells(length, std::max(2 * box.largest, 1e-300), count);
-  const auto morton = [&](const Vec3& share) {  // of the box
-    std::uint64_t place = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double cells_before = share[k] * size[as_index(k)];
-      place |= spread(static_cast<std::uint64_t>(std::clamp(cells_before, 0.0, size[as_index(k)] - 1.0))) << k;
-    }
-    return place;
-  };
-  std::vector<std::uint64_t> key(count);
-  team.each_body(count, [&](std::size_t i) {
-    const Vec3 x = xyz(bodies.position[i]);
-    Vec3 share = Vec3::Zero();
-    for (int k = 0; k < 3; ++k)
-      if (length[k] > 0) share[k] = (x[k] - box.low[k]) / length[k];
-    key[i] = morton(share);
-  });
-  // Stretches of the curve, at most as many as chunks, each of which one thread sorts.
-  const auto bits = static_cast<int>(std::bit_width(morton(Vec3::Ones())));
-  const int shift = std::max(0, bits + 1 - static_cast<int>(std::bit_width(chunks_of(count))));
-  std::vector<std::uint32_t> start((std::size_t{1} << (bits - shift)) + 1, 0);
-  for (const std::uint64_t one : key) ++start[(one >> shift) + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-  for (std::size_t i = 0; i < count; ++i) order[next[key[i] >> shift]++] = static_cast<std::uint32_t>(i);
-  // Ids break ties, so that the order depends on positions only and not on the history.
-  team.each(next.size(), [&](std::size_t stretch) {
-    std::sort(order.begin() + start[stretch], order.begin() + start[stretch + 1],
-              [&](std::uint32_t a, std::uint32_t b) {
-                return key[a] != key[b] ? key[a] < key[b] : bodies.id[a] < bodies.id[b];
-              });
-  });
-  return order;
-}
 
 int NeighbourSearch::Grid::index(int axis, double coordinate) const {
   const double cell = (coordinate - origin[axis]) * per_length[axis];
@@ -121,14 +29,19 @@ int NeighbourSearch::Grid::index(int axis, double coordinate) const {
 }
 
 void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins& skins, Team& team) {
+  build(bodies, all_chunks(bodies.count()), cell, skins, team);
+}
+
+void NeighbourSearch::build(const Bodies& bodies, std::span<const std::uint32_t> chunks, const Cell& cell,
+                            const Skins& skins, Team& team) {
   cell_ = cell, skins_ = skins;
   any_periodic_ = cell.periodic[0] || cell.periodic[1] || cell.periodic[2];
-  if (bodies.count() == 0) return grids_.clear();
-  const Extent box = extent(bodies, cell, team);
+  if (chunks.empty()) return grids_.clear();
+  Extent box = extent(bodies, chunks, team);
+  box.take_periods(cell);
   const double smallest = box.smallest, largest = box.largest;
   double thinnest = skins.largest();
-  for (std::size_t chunk = 0; chunk < chunks_of(bodies.count()); ++chunk)
-    thinnest = std::min(thinnest, skins.of_chunk(chunk));
+  for (const std::uint32_t chunk : chunks) thinnest = std::min(thinnest, skins.of_chunk(chunk));
   for (int k = 0; k < 3; ++k) {
     period_[k] = cell.periodic[as_index(k)] ? cell.high[k] - cell.low[k] : 0;
     per_period_[k] = cell.periodic[as_index(k)] ? 1 / period_[k] : 0;
@@ -145,20 +58,27 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
   };
   grids_.resize(as_index(classes));
   for (Grid& grid : grids_) grid.members.clear(), grid.largest_radius = grid.largest_reach = 0;
-  for (std::uint32_t i = 0; i < bodies.count(); ++i) {
-    const double radius = bodies.position[i].w;
-    const int c = class_of(radius);
-    grids_[as_index(c)].members.push_back(i);
-    grids_[as_index(c)].largest_radius = std::max(grids_[as_index(c)].largest_radius, radius);
-    grids_[as_index(c)].largest_reach = std::max(grids_[as_index(c)].largest_reach, radius + skins.of_body(i));
+  std::size_t count = 0;
+  for (const std::uint32_t chunk : chunks) {
+    const ChunkRange range(chunk, bodies.count());
+    count += range.last - range.first;
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const double radius = bodies.position[i].w;
+      Grid& grid = grids_[as_index(class_of(radius))];
+      grid.members.push_back(static_cast<std::uint32_t>(i));
+      grid.largest_radius = std::max(grid.largest_radius, radius);
+      grid.largest_reach = std::max(grid.largest_reach, radius + skins.of_chunk(chunk));
+    }
   }
+  // A rank searches a part of a periodic cell, with cells as wide as if it had all bodies.
+  const std::size_t times = bodies.count() / count;
   const Vec3 length = box.high - box.low;
-  std::vector<std::size_t> cell_of(bodies.count());
+  std::vector<std::size_t> cell_of(count);
   for (int c = 0; c < classes; ++c) {
     Grid& grid = grids_[as_index(c)];
     const std::vector<std::uint32_t>& members = grid.members;
     const double width = 2 * (grid.largest_radius + thinnest) + skins.reach();
-    grid.size = cells(length, std::max(width, 1e-300), members.size());
+    grid.size = grid_size(length, std::max(width, 1e-300), times * members.size());
     grid.origin = box.low;
     for (int k = 0; k < 3; ++k) grid.per_length[k] = length[k] > 0 ? grid.size[as_index(k)] / length[k] : 0;
     team.each_body(members.size(), [&](std::size_t m) {

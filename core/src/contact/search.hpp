@@ -41,15 +41,15 @@ inline std::uint8_t image_with(const std::array<int, 3>& shift) {
                                                            : digit(shift[0]) + 3 * across);
 }
 
-/// The order of bodies along a space-filling (Morton) curve through cells of about the largest diameter.
-std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell, Team& team);
-
 /// Finds all pairs nearer than their skins. Bodies must be inside the periods of `cell`, if any. Bodies are sorted into
 /// size classes that span a factor of 2.5 in radius, so that small grains need not search the cells of large ones.
 class NeighbourSearch {
  public:
   /// Periods must be at least shortest_period() of the largest body, skin and reach.
   void build(const Bodies& bodies, const Cell& cell, const Skins& skins, Team& team);
+  /// The same for the bodies of some chunks, in ascending order.
+  void build(const Bodies& bodies, std::span<const std::uint32_t> chunks, const Cell& cell, const Skins& skins,
+             Team& team);
   /// Twice the largest distance of the centres of a pair [m]: in a shorter period one body would meet another twice.
   static double shortest_period(double radius, double skin, double reach) { return 4 * (radius + skin) + 2 * reach; }
   /// The largest reach of the law [m].

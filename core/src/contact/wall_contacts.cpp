@@ -10,7 +10,6 @@
 #include <tuple>
 #include <utility>
 
-#include "bodies/reordering.hpp"
 #include "bodies/restored.hpp"
 #include "grit/contact/fields.hpp"
 
@@ -64,42 +63,61 @@ void straighten(WallContact& contact, std::span<const WallSurface> walls) {
 
 void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> group,
                            std::span<const WallSurface> walls, const Skins& skins, std::span<const StateField> fields,
-                           std::optional<std::span<const std::uint32_t>> order, Ranks& ranks, Team& team) {
+                           const Renumbering& now, Ranks& ranks, Team& team) {
   set_fields(fields);
-  const std::size_t count = bodies.count(), field_count = fields_.size();
-  // Contact histories follow their bodies into other chunks.
-  if (order) {
-    const std::vector<std::uint32_t> now = present_indices(*order, chunks_.size() * chunk_bodies);
-    std::vector<WallContact> contact;
-    std::vector<std::uint8_t> crossed;
-    std::vector<double> state;
-    for (Chunk& chunk : chunks_) {
-      contact.insert(contact.end(), chunk.contact.begin(), chunk.contact.end());
-      crossed.insert(crossed.end(), chunk.crossed.begin(), chunk.crossed.end());
-      state.insert(state.end(), chunk.state.begin(), chunk.state.end());
-      chunk.contact.clear(), chunk.crossed.clear(), chunk.state.clear(), chunk.row.clear();
-    }
-    for (WallContact& t : contact) t.body = now[t.body];
-    chunks_.resize(chunks_of(count));
-    std::vector<std::size_t> place(contact.size());
-    std::iota(place.begin(), place.end(), std::size_t{0});
-    std::erase_if(place, [&](std::size_t p) { return contact[p].body == body_gone; });
-    std::sort(place.begin(), place.end(),
-              [&](std::size_t p, std::size_t q) { return key(contact[p]) < key(contact[q]); });
-    for (const std::size_t p : place) {
-      Chunk& chunk = chunks_[contact[p].body / chunk_bodies];
-      chunk.contact.push_back(contact[p]);
-      chunk.crossed.push_back(crossed[p]);
-      chunk.state.insert(chunk.state.end(), state.begin() + static_cast<std::ptrdiff_t>(p * field_count),
-                         state.begin() + static_cast<std::ptrdiff_t>((p + 1) * field_count));
-      chunk.row.emplace_back();
-    }
-  }
-
-  chunks_.resize(chunks_of(count));
+  if (now.changes()) place(taken(now, ranks), bodies.count());
+  share(ranks);
+  chunks_.resize(chunks_of(bodies.count()));
   for (Chunk& chunk : chunks_) chunk.candidate.clear(), chunk.candidate_start.assign(walls.size() + 1, 0);
   team.each(ranks.last() - ranks.first(),
             [&](std::size_t k) { find_candidates(ranks.first() + k, bodies, group, walls, skins); });
+}
+
+WallContacts::Contacts WallContacts::taken(const Renumbering& now, Ranks& ranks) {
+  struct Sent {
+    WallContact contact;
+    std::uint8_t crossed;
+  };
+  const std::size_t fields = fields_.size();
+  std::vector<std::vector<Sent>> to(ranks.count());
+  std::vector<std::vector<double>> states(ranks.count());
+  for (std::size_t c = 0; c < chunks_.size(); ++c) {
+    Chunk chunk;
+    std::swap(chunk, chunks_[c]);
+    if (!whole_ && !cuts_.owns(ranks.rank(), c)) continue;
+    for (std::size_t i = 0; i < chunk.contact.size(); ++i) {
+      WallContact contact = chunk.contact[i];
+      contact.body = now(contact.body);
+      if (contact.body == body_gone) continue;
+      const unsigned rank = whole_ ? ranks.rank() : ranks.cuts().owner_of_body(contact.body);
+      to[rank].push_back({contact, chunk.crossed[i]});
+      const auto first = chunk.state.begin() + static_cast<std::ptrdiff_t>(i * fields);
+      states[rank].insert(states[rank].end(), first, first + static_cast<std::ptrdiff_t>(fields));
+    }
+  }
+  if (!whole_) to = ranks.exchange(to), states = ranks.exchange(states);
+  Contacts all;
+  for (unsigned r = 0; r < ranks.count(); ++r) {
+    for (const Sent& one : to[r]) all.contact.push_back(one.contact), all.crossed.push_back(one.crossed);
+    all.state.insert(all.state.end(), states[r].begin(), states[r].end());
+  }
+  return all;
+}
+
+void WallContacts::place(const Contacts& all, std::size_t bodies) {
+  const std::size_t fields = fields_.size();
+  chunks_.resize(chunks_of(bodies));
+  std::vector<std::size_t> order(all.contact.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t p) { return key(all.contact[p]); });
+  for (const std::size_t p : order) {
+    Chunk& chunk = chunks_[all.contact[p].body / chunk_bodies];
+    chunk.contact.push_back(all.contact[p]);
+    chunk.crossed.push_back(all.crossed[p]);
+    const auto first = all.state.begin() + static_cast<std::ptrdiff_t>(p * fields);
+    chunk.state.insert(chunk.state.end(), first, first + static_cast<std::ptrdiff_t>(fields));
+    chunk.row.emplace_back();
+  }
 }
 
 void WallContacts::complete(Ranks& ranks) {

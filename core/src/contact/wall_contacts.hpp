@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bodies/bodies.hpp"
+#include "bodies/reordering.hpp"
 #include "contact/skins.hpp"
 #include "grit/archive.hpp"
 #include "grit/contact/contact_law.hpp"
@@ -76,11 +77,13 @@ struct WallLoad {
 class WallContacts {
  public:
   /// Finds which bodies may come into contact with which walls while no displacement exceeds its skin. `group`: of each
-  /// body; may be empty if walls act on all groups. `order`: as in ContactTable::rebuild(). Contacts of all ranks must
-  /// be complete.
+  /// body; may be empty if walls act on all groups. `now`: of the bodies in contact of which this rank has had the
+  /// chunks.
   void rebuild(const Bodies& bodies, std::span<const std::uint16_t> group, std::span<const WallSurface> walls,
-               const Skins& skins, std::span<const StateField> fields,
-               std::optional<std::span<const std::uint32_t>> order, Ranks& ranks, Team& team);
+               const Skins& skins, std::span<const StateField> fields, const Renumbering& now, Ranks& ranks,
+               Team& team);
+  /// Of the contacts of all ranks, which it has, a rank continues those of its own chunks.
+  void share(const Ranks& ranks) { cuts_ = ranks.cuts(), whole_ = !ranks.several(); }
   /// Completes the contacts of all ranks, with their forces.
   void complete(Ranks& ranks);
   /// Finds the candidates of one chunk again, of the same bodies and walls. Contacts and their histories stay.
@@ -149,7 +152,10 @@ class WallContacts {
   }
   /// Number of contacts that overlap or have a force.
   std::size_t touching_count() const;
-  void serialize(Archive& archive) { archive(chunks_); }
+  void serialize(Archive& archive) {
+    archive(chunks_);
+    if (archive.restoring()) whole_ = true;
+  }
   /// Throws Error unless restored contacts fit so many bodies, walls and materials.
   void check_restored(std::size_t bodies, std::size_t walls, std::size_t materials) const;
 
@@ -201,8 +207,21 @@ class WallContacts {
   /// Books the elastic energy of ended contacts as dissipated, and that of bonds that broke.
   void part(const Workspace& work, const ContactLaw& law, const Bodies& bodies, Losses& losses) const;
 
+  /// All contacts of some chunks, one after the other.
+  struct Contacts {
+    std::vector<WallContact> contact;
+    std::vector<std::uint8_t> crossed;
+    std::vector<double> state;
+  };
+  /// Takes the contacts of former chunks out of these; with several ranks, those that belong to chunks of this one now.
+  Contacts taken(const Renumbering& now, Ranks& ranks);
+  /// Puts them into the chunks of their bodies.
+  void place(const Contacts& all, std::size_t bodies);
+
   std::vector<Chunk> chunks_;
   std::vector<StateField> fields_;
+  Cuts cuts_;          // which rank had which chunk at the last rebuild
+  bool whole_ = true;  // whether this rank has the contacts of all chunks
 };
 
 }  // namespace grit

@@ -14,10 +14,10 @@ bool may_leave(const std::vector<std::string>& open_sides, int axis, bool high) 
 
 }  // namespace
 
-Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std::vector<std::string>& open_sides,
-             const std::function<void(std::size_t body, int axis, bool high)>& escaped, Team& team) {
+Wrapped wrap(Bodies& bodies, std::size_t first, std::size_t last, const Cell& cell, const Mat3& velocities,
+             const std::vector<std::string>& open_sides, Team& team) {
   const Vec3 period = cell.high - cell.low;
-  Wrapped result{std::vector<bool>(bodies.count(), false)};
+  Wrapped result{std::vector<bool>(bodies.count(), false), {}, {}};
   const auto outside = [&](const Vec3& x, int k) { return x[k] < cell.low[k] || x[k] > cell.high[k]; };
   const auto periods_off = [&](const Vec3& x, int k) { return std::floor((x[k] - cell.low[k]) / period[k]); };
   // The image across z may be off along x and y, that across y along x.
@@ -50,26 +50,21 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std
       const double periods = periods_off(clump.centre, k);
       if (periods == 0) continue;
       shift(clump.centre, periods, k);
-      result.energy_gained += jump(clump.velocity, periods, k, clump.inverse_mass);
+      result.gained.push_back(jump(clump.velocity, periods, k, clump.inverse_mass));
       for (std::uint32_t s = clump.first; s < clump.last; ++s)
         bodies.clumps.of_body[bodies.clumps.spheres[s]].periods[static_cast<std::size_t>(k)] -=
             static_cast<std::int8_t>(periods);
     }
-  struct Escape {
-    std::size_t body;
-    int axis;
-    bool high;
-  };
   struct Part {
     std::vector<double> gained;  // energies, in the order of the bodies
     std::optional<Escape> escape;
   };
-  std::vector<Part> parts(chunks_of(bodies.count()));
+  std::vector<Part> parts(last - first);
   // Bits of different chunks are in different words of result.leaves.
   static_assert(chunk_bodies % 64 == 0);
-  team.each(parts.size(), [&](std::size_t chunk) {
-    Part& part = parts[chunk];
-    const ChunkRange range(chunk, bodies.count());
+  team.each(parts.size(), [&](std::size_t own) {
+    Part& part = parts[own];
+    const ChunkRange range(first + own, bodies.count());
     for (std::size_t i = range.first; i < range.last && !part.escape; ++i) {
       Vec3 x = xyz(bodies.position[i]), v = xyz(bodies.velocity[i]);
       const bool in_clump = bodies.clumps.clump_of(i) != no_clump;
@@ -87,8 +82,8 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std
         if (periods == 0) continue;
         shift(x, periods, k);
         if (!bodies.origin.empty()) shift(bodies.origin[i], periods, k);
-        const double own = jump(v, periods, k, bodies.velocity[i].w);
-        if (!in_clump) part.gained.push_back(own);
+        const double energy = jump(v, periods, k, bodies.velocity[i].w);
+        if (!in_clump) part.gained.push_back(energy);
         if (in_clump)
           bodies.clumps.of_body[i].periods[static_cast<std::size_t>(k)] += static_cast<std::int8_t>(periods);
         else if (x[k] >= cell.high[k]) x[k] = cell.low[k];
@@ -100,8 +95,8 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std
     }
   });
   for (const Part& part : parts) {
-    if (part.escape) escaped(part.escape->body, part.escape->axis, part.escape->high);
-    for (const double gained : part.gained) result.energy_gained += gained;
+    if (!result.escaped) result.escaped = part.escape;
+    result.gained.insert(result.gained.end(), part.gained.begin(), part.gained.end());
   }
   return result;
 }

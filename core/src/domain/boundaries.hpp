@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,16 +14,22 @@
 
 namespace grit {
 
+/// A body outside a closed side.
+struct Escape {
+  std::size_t body;
+  int axis;
+  bool high;
+};
 struct Wrapped {
-  std::vector<bool> leaves;  ///< by body: whether it has left through an open side
-  double energy_gained = 0;  ///< kinetic, from the mean flow where bodies re-enter [J]
+  std::vector<bool> leaves;       ///< by body: whether it has left through an open side
+  std::vector<double> gained;     ///< kinetic energies, from the mean flow where bodies re-enter, in order [J]
+  std::optional<Escape> escaped;  ///< the first one
 };
 
-/// Moves bodies that have left the periodic cell back into it. `velocities` of its images [m/s] are in columns, by
-/// axis; `open_sides` has entries such as "-x". Calls `escaped(body, axis, high)`, which must throw, for a body outside
-/// a closed side.
-Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std::vector<std::string>& open_sides,
-             const std::function<void(std::size_t body, int axis, bool high)>& escaped, Team& team);
+/// Moves bodies that have left the periodic cell back into it: those of the chunks `first` … `last` − 1, and all
+/// clumps. `velocities` of its images [m/s] are in columns, by axis; `open_sides` has entries such as "-x".
+Wrapped wrap(Bodies& bodies, std::size_t first, std::size_t last, const Cell& cell, const Mat3& velocities,
+             const std::vector<std::string>& open_sides, Team& team);
 
 /// Expresses the shifts of spheres relative to their clumps in new periods; see DeformingCell::reduce_tilt().
 void change_periods(Bodies& bodies, const Eigen::Matrix3i& of_old);

@@ -1,14 +1,21 @@
 #include "kernel/completion.hpp"
 
+#include "kernel/body_groups.hpp"
+
 namespace grit {
 
 void complete_bodies(State& state, Passes& passes) {
   if (state.complete.bodies) return;
   Bodies& bodies = state.bodies;
-  const auto complete = [&](auto&... arrays) { (passes.ranks().complete_bodies(arrays, bodies.count()), ...); };
-  complete(bodies.position, bodies.velocity, bodies.spin);
-  if (!bodies.rotation.empty()) complete(bodies.rotation);
-  state.complete.bodies = true;
+  const auto complete = [&](auto&... arrays) {
+    ((arrays.empty() ? void() : passes.ranks().complete_bodies(arrays, bodies.count())), ...);
+  };
+  complete(bodies.position, bodies.velocity, bodies.spin, bodies.rotation);
+  if (!state.complete.identities) {
+    complete(bodies.id, bodies.material, bodies.origin);
+    find_groups(state);
+  }
+  state.complete.bodies = state.complete.identities = true;
 }
 
 void complete_sums(State& state, Passes& passes) {

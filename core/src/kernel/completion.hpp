@@ -6,7 +6,7 @@
 
 namespace grit {
 
-/// Completes positions, velocities, spins and rotations if they are out of date; all ranks must call this.
+/// Completes the bodies if those of other ranks have moved; all ranks must call this.
 void complete_bodies(State& state, Passes& passes);
 /// The same of the sums of contact forces.
 void complete_sums(State& state, Passes& passes);

@@ -84,15 +84,14 @@ void NeighbourLists::lay_skins(const Bodies& bodies, const DeformingCell& cell, 
                                double dt, double wall_speed, Passes& passes) {
   const double reach = largest_reach(reaches_);
   const SkinWidths widths(cell, statistics, reach);
-  std::vector<double> skins(chunks_of(bodies.count()));
-  passes.team().each(skins.size(), [&](std::size_t chunk) {
+  const std::vector<double> skins = passes.of_chunks([&](std::size_t chunk) {
     const ChunkRange range(chunk, bodies.count());
     double fastest = 0;
     for (std::size_t i = range.first; i < range.last; ++i) {
       const Vec3 flow = cell.mean_flow(xyz(bodies.position[i]));
       fastest = std::max(fastest, (xyz(bodies.velocity[i]) - flow).squaredNorm());
     }
-    skins[chunk] = widths.at(std::sqrt(fastest), dt);
+    return widths.at(std::sqrt(fastest), dt);
   });
   skins_.reset(skins, widths.at(wall_speed, dt), reach);
   strain_travel_ = 0;
@@ -102,12 +101,19 @@ double NeighbourLists::largest_reach(std::span<const double> reaches) {
   return reaches.empty() ? 0 : (1 + 1e-6) * *std::ranges::max_element(reaches);
 }
 
-void NeighbourLists::rebuild(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
+void NeighbourLists::rebuild(Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
                              std::vector<double> reaches, double dt, double wall_speed, Passes& passes) {
   reaches_ = std::move(reaches);
   lay_skins(bodies, cell, statistics, dt, wall_speed, passes);
-  search_.build(bodies, cell.cell(), skins_, passes.team());
-  reference_ = bodies.position, reference_cell_ = cell.cell();
+  surroundings_.find(bodies, cell.cell(), skins_, passes.ranks(), passes.team());
+  search_.build(bodies, surroundings_.chunks(), cell.cell(), skins_, passes.team());
+  reference_.resize(bodies.position.size()), reference_cell_ = cell.cell();
+  passes.each_own([&](std::size_t chunk) {
+    const ChunkRange range(chunk, bodies.count());
+    std::copy(bodies.position.begin() + std::ptrdiff_t(range.first),
+              bodies.position.begin() + std::ptrdiff_t(range.last), reference_.begin() + std::ptrdiff_t(range.first));
+  });
+  if (!reference_.empty()) reference_.back() = bodies.position.back();
   ++rebuilds_;
   requested_ = false;
 }

@@ -9,6 +9,7 @@
 #include "bodies/large_array.hpp"
 #include "contact/search.hpp"
 #include "contact/skins.hpp"
+#include "contact/surroundings.hpp"
 #include "domain/deforming_cell.hpp"
 #include "domain/population_statistics.hpp"
 #include "kernel/passes.hpp"
@@ -19,6 +20,7 @@ class NeighbourLists {
  public:
   const Skins& skins() const { return skins_; }
   const NeighbourSearch& search() const { return search_; }
+  const Surroundings& surroundings() const { return surroundings_; }
   std::uint64_t rebuilds() const { return rebuilds_; }
   /// Number of searches at walls only, between rebuilds.
   std::uint64_t searches_at_walls() const { return searches_at_walls_; }
@@ -36,8 +38,8 @@ class NeighbourLists {
   /// Whether this rebuild should also sort bodies in space.
   bool sorts() const { return rebuilds_ % sort_every == 0; }
   /// Searches neighbours. `reaches`: those of the law for the largest radius [m]. Skins follow from speeds only, so
-  /// that a run is identical on every machine.
-  void rebuild(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
+  /// that a run is identical on every machine. With several ranks, takes bodies near own ones from the others.
+  void rebuild(Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
                std::vector<double> reaches, double dt, double wall_speed, Passes& passes);
   /// Before candidates at walls are found again, without a rebuild: sets the skins for this. Arguments as in rebuild().
   void begin_search_at_walls(const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
@@ -53,6 +55,8 @@ class NeighbourLists {
   static double shortest_period(const Bodies& bodies, const PopulationStatistics& statistics,
                                 std::span<const double> reaches);
 
+  /// Completes what is saved with values of other ranks.
+  void complete(std::size_t bodies, Ranks& ranks) { ranks.complete_bodies(reference_, bodies); }
   void serialize(Archive& archive);
   /// Throws Error unless restored lists fit so many bodies.
   void check_restored(std::size_t bodies) const;
@@ -63,8 +67,9 @@ class NeighbourLists {
                  double wall_speed, Passes& passes);
 
   NeighbourSearch search_;
+  Surroundings surroundings_;
   Skins skins_;
-  LargeArray<Row> reference_;  // positions at the last rebuild
+  LargeArray<Row> reference_;  // positions of own bodies at the last rebuild
   Cell reference_cell_;
   std::vector<double> reaches_;  // of the law at the last rebuild
   double strain_travel_ = 0;

@@ -43,7 +43,9 @@ struct State {
   double overlap = 0;                          ///< largest over a radius, at the last evaluation
   /// Whether a rank has values of all bodies, or only of its own and those near them; see completion.hpp.
   struct {
-    bool bodies = true, sums = true;
+    bool bodies = true;      ///< where they are and how they move
+    bool identities = true;  ///< which body has which index; if not, `bodies` is false, too
+    bool sums = true;
   } complete;
 
   /// Input of the contact pass; `again` if this instant has been evaluated before.

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
+#include <numeric>
+#include <utility>
 #include <vector>
 
+#include "contact/migration.hpp"
 #include "domain/boundaries.hpp"
 #include "kernel/arrivals.hpp"
 #include "kernel/body_groups.hpp"
@@ -50,63 +52,104 @@ void Stepper::mark_removed(std::vector<bool>& leaves) const {
     }
 }
 
+bool Stepper::rebuilds_whole() const {
+  return !passes_.ranks().several() || state_.pairs.is_whole() || !state_.bodies.clumps.none() || !arrivals_.empty() ||
+         !state_.settings.removal_engines.empty();
+}
+
+std::vector<bool> Stepper::wrap_bodies(bool whole) {
+  Ranks& ranks = passes_.ranks();
+  state_.complete.bodies = whole;
+  Wrapped wrapped =
+      wrap(state_.bodies, whole ? 0 : ranks.first(), whole ? passes_.chunks().size() : ranks.last(), state_.cell.cell(),
+           state_.cell.image_velocities(state_.time.previous_dt), state_.settings.open_sides, passes_.team());
+  std::vector<Escape> escapes(wrapped.escaped ? 1 : 0, wrapped.escaped.value_or(Escape{}));
+  if (!whole) escapes = ranks.all(escapes), wrapped.gained = ranks.all(wrapped.gained);
+  if (!escapes.empty()) {
+    const auto [body, axis, high] = escapes.front();
+    complete_bodies(state_, passes_);
+    fail_at_body(state_, Guard::domain, group_keys(state_, body), body,
+                 "left the domain through its " + std::string(high ? "upper" : "lower") + " " + "xyz"[axis] + " side",
+                 "close the domain there with a wall, make it larger, or name the side in /domain/open_sides");
+  }
+  balance_.add_cell(std::accumulate(wrapped.gained.begin(), wrapped.gained.end(), 0.0));
+  return std::move(wrapped.leaves);
+}
+
+void Stepper::discharge(const std::vector<bool>& leaves, bool whole) {
+  std::vector<Leaving> all =
+      leaving(state_.bodies, leaves, state_.time.time,
+              [this](std::size_t body) -> const MotionSettings& { return state_.motion_of(body); });
+  if (!whole) {
+    all = passes_.ranks().all(all);
+    std::ranges::sort(all, {}, [](const Leaving& one) { return one.departure.id; });
+  }
+  for (Leaving& one : all) {
+    state_.departures.push_back(one.departure);
+    state_.discharged_mass += one.departure.mass;
+    balance_.add_settings(-one.kinetic);
+    guard_.discharged(one.kinetic + one.potential);
+  }
+}
+
+Renumbering Stepper::sort_bodies(const std::vector<bool>& leaves, bool some_leave, bool whole) {
+  Bodies& bodies = state_.bodies;
+  Ranks& ranks = passes_.ranks();
+  Renumbering now;
+  if (whole) {
+    std::vector<std::uint32_t> order = spatial_order(bodies, state_.cell.cell(), passes_.team());
+    if (some_leave) discharge(leaves, whole), std::erase_if(order, [&](std::uint32_t i) { return leaves[i]; });
+    now = Renumbering(order, bodies.count());
+    bodies.reorder(order, passes_.team());
+    passes_.resize(bodies.count());
+    passes_.divide();
+  } else {
+    Migration migration(bodies, leaves, state_.cell.cell(), ranks, passes_.team());
+    if (some_leave) discharge(leaves, whole);
+    passes_.resize(migration.count());
+    passes_.divide();
+    now = migration.move(bodies, ranks);
+    state_.halo.exchange(now, ranks);
+    state_.complete.identities = false;
+  }
+  find_groups(state_);
+  state_.sum.resize(bodies.count() + 1);
+  return now;
+}
+
 void Stepper::rebuild() {
-  sharing_.steps_end(passes_.ranks(), state_.time.step);
+  Ranks& ranks = passes_.ranks();
+  sharing_.steps_end(ranks, state_.time.step);
   check_periods(state_);
   repeat_walls(state_);
-  complete_bodies(state_, passes_);
-  state_.wall_contacts.complete(passes_.ranks());
+  const bool whole = rebuilds_whole();
+  if (whole) complete_bodies(state_, passes_);
   Bodies& bodies = state_.bodies;
   DeformingCell& cell = state_.cell;
   if (const Eigen::Matrix3i moved = cell.reduce_tilt(); !moved.isIdentity()) {
     change_periods(bodies, moved);
     cell.update_images(state_.time.previous_dt);
   }
-  Wrapped wrapped = wrap(
-      bodies, cell.cell(), cell.image_velocities(state_.time.previous_dt), state_.settings.open_sides,
-      [this](std::size_t body, int axis, bool high) {
-        fail_at_body(
-            state_, Guard::domain, group_keys(state_, body), body,
-            "left the domain through its " + std::string(high ? "upper" : "lower") + " " + "xyz"[axis] + " side",
-            "close the domain there with a wall, make it larger, or name the side "
-            "in /domain/open_sides");
-      },
-      passes_.team());
-  balance_.add_cell(wrapped.energy_gained);
-  mark_removed(wrapped.leaves);
+  std::vector<bool> leaves = wrap_bodies(whole);
+  mark_removed(leaves);
   if (!arrivals_.empty()) check_arrivals(state_, view_, arrivals_);
-  const bool some_leave = std::ranges::find(wrapped.leaves, true) != wrapped.leaves.end();
-  std::optional<std::vector<std::uint32_t>> order;
-  if (state_.lists.sorts() || some_leave || !arrivals_.empty()) {
-    order = spatial_order(bodies, cell.cell(), passes_.team());
-    if (some_leave) {
-      const auto motion_of = [this](std::size_t body) -> const MotionSettings& { return state_.motion_of(body); };
-      for (Leaving& one : leaving(bodies, wrapped.leaves, state_.time.time, motion_of)) {
-        state_.departures.push_back(one.departure);
-        state_.discharged_mass += one.departure.mass;
-        balance_.add_settings(-one.kinetic);
-        guard_.discharged(one.kinetic + one.potential);
-      }
-      std::erase_if(*order, [&](std::uint32_t i) { return wrapped.leaves[i]; });
-    }
-    bodies.reorder(*order, passes_.team());
-    find_groups(state_);
-    state_.sum.resize(bodies.count() + 1), passes_.resize(bodies.count());
-  }
-  passes_.divide();
+  const bool leaves_here = std::ranges::find(leaves, true) != leaves.end();
+  const bool some_leave = whole ? leaves_here : ranks.any(leaves_here);
+  Renumbering now;
+  if (state_.lists.sorts() || some_leave || !arrivals_.empty()) now = sort_bodies(leaves, some_leave, whole);
   state_.lists.rebuild(bodies, cell, state_.statistics, state_.reaches(), state_.time.dt, bounds_.wall_speed(),
                        passes_);
-  state_.pairs.rebuild(bodies, state_.lists.search(), cell.periodic(), state_.settings.fields, order, passes_.ranks(),
-                       passes_.team());
-  state_.halo.build(state_.pairs, passes_.ranks());
+  state_.pairs.rebuild(bodies, state_.lists.search(), cell.periodic(), state_.settings.fields, now,
+                       state_.lists.surroundings().boxes(), ranks, passes_.team());
+  state_.halo.build(state_.pairs, ranks);
   readiness_.build(state_.pairs.reached());
-  state_.wall_contacts.rebuild(bodies, state_.group, state_.surfaces, state_.lists.skins(), state_.settings.fields,
-                               order, passes_.ranks(), passes_.team());
+  state_.wall_contacts.rebuild(bodies, state_.group, state_.surfaces, state_.lists.skins(), state_.settings.fields, now,
+                               ranks, passes_.team());
   bounds_.rebuild(state_, passes_);
   arrivals_.clear();
   view_.invalidate();  // engines may have read bodies in their former order
   time_step_.set(state_, view_, bounds_, passes_);
-  sharing_.search_ends(passes_.ranks(), state_.halo, bodies.count());
+  sharing_.search_ends(ranks, state_.halo, bodies.count());
 }
 
 void Stepper::collect_sharing() {
@@ -423,6 +466,7 @@ void Stepper::share() {
   if (!passes_.ranks().several()) return;
   passes_.divide();
   split(state_.pairs.part(passes_.ranks()));
+  state_.wall_contacts.share(passes_.ranks());
   state_.halo.build(state_.pairs, passes_.ranks());
 }
 
@@ -433,6 +477,7 @@ void Stepper::split(ContactTable own) {
 
 ContactTable Stepper::join() {
   complete_bodies(state_, passes_);
+  state_.lists.complete(state_.bodies.count(), passes_.ranks());
   passes_.complete_results(true);
   state_.wall_contacts.complete(passes_.ranks());
   ContactTable whole = state_.pairs.joined(passes_.ranks());

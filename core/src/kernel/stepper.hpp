@@ -55,6 +55,14 @@ class Stepper {
   /// Operations before contacts. Returns whether this instant has been evaluated before.
   bool prepare();
   void rebuild();
+  /// Whether each rank rebuilds with all bodies: some parts need them.
+  bool rebuilds_whole() const;
+  /// Moves bodies back into a periodic cell. Returns which ones leave; unless `whole`, of own ones.
+  std::vector<bool> wrap_bodies(bool whole);
+  /// Records bodies that leave.
+  void discharge(const std::vector<bool>& leaves, bool whole);
+  /// Sorts bodies in space without those that leave, and divides them among the ranks anew.
+  Renumbering sort_bodies(const std::vector<bool>& leaves, bool some_leave, bool whole);
   /// Finds candidates at walls again; neighbour lists stay.
   void search_at_walls();
   /// Marks the bodies that engines remove.

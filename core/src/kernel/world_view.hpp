@@ -34,11 +34,11 @@ class WorldView final : public World {
   std::uint64_t step() const override { return state_.time.step; }
   double dt() const override { return state_.time.dt; }
   const std::string& stage() const override { return state_.stage; }
-  std::span<const std::uint32_t> ids() const override { return state_.bodies.id; }
+  std::span<const std::uint32_t> ids() const override { return bodies().id; }
   std::span<const Row> positions() const override { return {bodies().position.data(), count()}; }
   std::span<const Row> velocities() const override { return {bodies().velocity.data(), count()}; }
   std::span<const Row> spins() const override { return {bodies().spin.data(), count()}; }
-  std::span<const std::uint8_t> materials() const override { return {state_.bodies.material.data(), count()}; }
+  std::span<const std::uint8_t> materials() const override { return {bodies().material.data(), count()}; }
   std::span<const std::string> material_names() const override { return state_.materials; }
   std::span<const BodyGroup> groups() const override { return state_.bodies.groups; }
   std::span<const Vec3> rotations() const override { return bodies().rotation; }

@@ -40,6 +40,10 @@ class MpiCommunicator final : public Communicator {
     MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_BYTE, all.data(), counts_.data(), starts_.data(), MPI_BYTE, all_);
   }
 
+  void sum(std::span<std::uint64_t> numbers) override {
+    MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_UINT64_T, MPI_SUM, all_);
+  }
+
   void exchange(std::span<const Message> sent, std::span<const Message> received) override {
     requests_.clear();
     for (const Message& one : received)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace grit {
@@ -22,6 +23,8 @@ class Communicator {
   /// Fills `all` with a part of each rank: that of rank r from starts[r] to starts[r + 1]. The own part is in place
   /// before.
   virtual void gather(std::span<std::byte> all, std::span<const std::size_t> starts) = 0;
+  /// Adds the numbers of all ranks, entry by entry.
+  virtual void sum(std::span<std::uint64_t> numbers) = 0;
   /// Sends some messages and receives others, of known lengths: at most one to and one from each rank.
   virtual void exchange(std::span<const Message> sent, std::span<const Message> received) = 0;
   /// The last call of each rank: waits for the others. False if they have not called it within so many seconds.

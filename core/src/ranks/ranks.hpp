@@ -65,6 +65,14 @@ class Ranks {
     if (several()) gather(bytes_of(found), one_each(sizeof(T)));
     return found;
   }
+  /// Adds the numbers of all ranks, entry by entry.
+  void sum(std::span<std::uint64_t> numbers) {
+    if (!several()) return;
+    refuse_alone();
+    const Stopwatch watch(traffic_.seconds);
+    ++traffic_.gathers, traffic_.gathered += static_cast<double>(numbers.size_bytes());
+    all_->sum(numbers);
+  }
   bool any(bool own) {
     if (!several()) return own;
     const auto found = each(static_cast<char>(own));
