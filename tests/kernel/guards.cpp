@@ -77,6 +77,7 @@ class Travel : public testing::Test {
   Guard guard(const Vec3& velocity) {
     set_velocity(state_, 0, velocity);
     passes_.chunks()[0].motion = {.largest_speed = velocity.norm(), .finite = velocity.allFinite()};
+    passes_.find_extremes(state_.lists.furthest_here(passes_, state_.time.previous_dt), false);
     return failure([&] { bounds_.advance(state_, passes_); }).first;
   }
   State state_ = two_spheres(0.004);

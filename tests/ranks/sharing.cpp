@@ -62,7 +62,10 @@ TEST(Sharing, CountsWhatTwoRanksHaveTwice) {
     record.search_ends(ranks, halo, count);
     for (int step = 0; step < 10; ++step) {
       Bodies moved = bodies;
-      halo.exchange(moved, ranks);
+      std::vector<double> of_chunk(chunks_of(count), ranks.rank());
+      halo.exchange(
+          moved, [&](std::size_t chunk) -> double& { return of_chunk[chunk]; }, ranks);
+      EXPECT_EQ(of_chunk[ranks.rank() == 0 ? 2 : 1], 1.0 - ranks.rank()) << "the chunk beyond";
       EXPECT_FALSE(ranks.any(false));
     }
     record.steps_end(ranks, 10);
@@ -73,9 +76,9 @@ TEST(Sharing, CountsWhatTwoRanksHaveTwice) {
     EXPECT_DOUBLE_EQ(found.neighbours, 2.0 / static_cast<double>(count));
     EXPECT_DOUBLE_EQ(found.shared_pairs, 1.0 / static_cast<double>(count - 1));
     EXPECT_EQ(found.step.messages, 1);
-    EXPECT_EQ(found.step.bytes, 9 * sizeof(double));
+    EXPECT_EQ(found.step.bytes, 10 * sizeof(double));
     EXPECT_EQ(found.step.gathers, 1);
-    EXPECT_EQ(found.step.gathered, 1);
+    EXPECT_EQ(found.step.gathered, sizeof(std::uint64_t));
     EXPECT_EQ(found.search.messages, 0);
     EXPECT_EQ(found.search.gathers, 0.5);  // none in the first
   });

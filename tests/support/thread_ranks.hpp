@@ -59,16 +59,10 @@ class ThreadRank final : public Communicator {
     });
   }
   void sum(std::span<std::uint64_t> numbers) override {
-    const std::vector<std::uint64_t> own(numbers.begin(), numbers.end());
-    auto* const bytes = const_cast<std::byte*>(reinterpret_cast<const std::byte*>(own.data()));
-    board_.share(rank_, {{rank_, {bytes, numbers.size_bytes()}}}, [&](const auto& shown) {
-      std::ranges::fill(numbers, 0);
-      for (const auto& messages : shown) {
-        std::vector<std::uint64_t> theirs(numbers.size());
-        copy(messages.front().bytes, std::as_writable_bytes(std::span(theirs)));
-        for (std::size_t k = 0; k < theirs.size(); ++k) numbers[k] += theirs[k];
-      }
-    });
+    reduce(numbers, [](std::uint64_t a, std::uint64_t b) { return a + b; });
+  }
+  void largest(std::span<double> numbers) override {
+    reduce(numbers, [](double a, double b) { return std::max(a, b); });
   }
   void exchange(std::span<const Message> sent, std::span<const Message> received) override {
     board_.share(rank_, {sent.begin(), sent.end()}, [&](const auto& shown) {
@@ -86,6 +80,18 @@ class ThreadRank final : public Communicator {
   [[noreturn]] void kill_all(int) override { throw std::runtime_error("a rank ends all"); }
 
  private:
+  template <class T, class Operation>
+  void reduce(std::span<T> numbers, Operation operation) {
+    std::vector<T> own(numbers.begin(), numbers.end());
+    board_.share(rank_, {{rank_, std::as_writable_bytes(std::span(own))}}, [&](const auto& shown) {
+      for (unsigned r = 0; r < count(); ++r) {
+        std::vector<T> theirs(numbers.size());
+        copy(shown[r].front().bytes, std::as_writable_bytes(std::span(theirs)));
+        for (std::size_t k = 0; k < theirs.size(); ++k)
+          numbers[k] = r == 0 ? theirs[k] : operation(numbers[k], theirs[k]);
+      }
+    });
+  }
   static void copy(std::span<const std::byte> from, std::span<std::byte> to) {
     if (from.size() != to.size()) throw std::logic_error("a message has another length");
     std::ranges::copy(from, to.begin());

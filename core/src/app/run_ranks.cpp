@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/dll/shared_library.hpp>
+#include <boost/preprocessor/stringize.hpp>
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
@@ -45,7 +46,9 @@ Communicator* open_mpi() {
   static boost::dll::shared_library library;
   library.load(file, boost::dll::load_mode::rtld_lazy | boost::dll::load_mode::rtld_global, error);
   if (error) throw Error(file.string() + " cannot be opened: " + error.message());
-  return library.get<Communicator*()>("grit_mpi")();
+  constexpr const char* entry = BOOST_PP_STRINGIZE(GRIT_MPI_ENTRY);
+  if (!library.has(entry)) throw Error(file.string() + " is of another build of grit; build or install both together");
+  return library.get<Communicator*()>(entry)();
 }
 
 std::string host() {

@@ -262,11 +262,11 @@ double CriticalStep::stiffness(std::size_t chunk, const Instant& at) const {
   return *std::ranges::max_element(sums);
 }
 
-bool CriticalStep::due(const WallContacts& walls, const Skins& skins, const Change& change, Ranks& ranks) const {
+bool CriticalStep::due(const WallContacts& walls, const Skins& skins, const Change& change, const Ranks& ranks) const {
   bool due = false;
   for (std::size_t chunk = ranks.first(); chunk < ranks.last() && !due; ++chunk)
     due = moved(chunk, walls, skins, change.way) || pressed(chunk, change.overlap);
-  return ranks.any(due);
+  return due;
 }
 
 Demand CriticalStep::renew(const Instant& at, const Change& change, Team& team) {

@@ -65,8 +65,8 @@ class CriticalStep {
   };
   /// Evaluates chunks with such a change, or with new candidates at walls.
   Demand renew(const Instant& at, const Change& change, Team& team);
-  /// Whether there are such chunks.
-  bool due(const WallContacts& walls, const Skins& skins, const Change& change, Ranks& ranks) const;
+  /// Whether there are such own chunks.
+  bool due(const WallContacts& walls, const Skins& skins, const Change& change, const Ranks& ranks) const;
   /// Candidates of own chunks get the numbers that they have in another table; those of others are forgotten.
   void renumber(const ContactTable& before, const ContactTable& now, const Ranks& ranks);
   /// Completes the values of all ranks, whose candidates have numbers of one table.

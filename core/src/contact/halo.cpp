@@ -1,6 +1,7 @@
 #include "contact/halo.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace grit {
 
@@ -8,10 +9,11 @@ void Halo::build(const ContactTable& pairs, const Ranks& ranks) {
   sent_.assign(ranks.count(), {}), received_.assign(ranks.count(), {});
   out_.resize(ranks.count()), in_.resize(ranks.count());
   pairs_ = shared_pairs_ = 0;
+  chunks_.clear();
   if (!ranks.several()) return;
   const auto add = [&](std::uint32_t own, std::uint32_t other) {
     const unsigned rank = ranks.cuts().owner_of_body(other);
-    sent_[rank].push_back(own), received_[rank].push_back(other);
+    sent_[rank].bodies.push_back(own), received_[rank].bodies.push_back(other);
     ++shared_pairs_;
   };
   // Both ranks of a pair have it.
@@ -21,57 +23,88 @@ void Halo::build(const ContactTable& pairs, const Ranks& ranks) {
     if (!ranks.owns_body(a)) add(b, a);
     else if (!ranks.owns_body(b)) add(a, b);
   });
-  for (auto* lists : {&sent_, &received_})
-    for (auto& list : *lists) {
-      std::ranges::sort(list);
-      const auto doubles = std::ranges::unique(list);
-      list.erase(doubles.begin(), doubles.end());
+  const auto keep_one_of_each = [](std::vector<std::uint32_t>& list) {
+    const auto doubles = std::ranges::unique(list);
+    list.erase(doubles.begin(), doubles.end());
+  };
+  for (auto* of_ranks : {&sent_, &received_})
+    for (Lists& list : *of_ranks) {
+      std::ranges::sort(list.bodies);
+      keep_one_of_each(list.bodies);
+      for (const std::uint32_t body : list.bodies) list.chunks.push_back(body / chunk_bodies);
+      keep_one_of_each(list.chunks);
     }
+  for (const Lists& list : received_) chunks_.insert(chunks_.end(), list.chunks.begin(), list.chunks.end());
 }
 
 std::size_t Halo::bodies() const {
   std::size_t count = 0;
-  for (const auto& list : received_) count += list.size();
+  for (const Lists& list : received_) count += list.bodies.size();
   return count;
 }
 
 template <class Pack, class Unpack>
-void Halo::exchange(std::size_t numbers, Pack pack, Unpack unpack, Ranks& ranks) const {
+void Halo::exchange(std::size_t of_body, std::size_t of_chunk, Pack pack, Unpack unpack, Ranks& ranks) const {
   if (!ranks.several()) return;
+  const auto numbers = [&](const Lists& lists) {
+    return of_body * lists.bodies.size() + of_chunk * lists.chunks.size();
+  };
   std::vector<Communicator::Message> sent, received;
   for (unsigned r = 0; r < ranks.count(); ++r) {
-    out_[r].resize(sent_[r].size() * numbers), in_[r].resize(received_[r].size() * numbers);
-    for (std::size_t k = 0; k < sent_[r].size(); ++k) pack(sent_[r][k], &out_[r][k * numbers]);
+    out_[r].resize(numbers(sent_[r])), in_[r].resize(numbers(received_[r]));
+    pack(out_[r].data(), sent_[r]);
     Ranks::add(sent, r, out_[r]), Ranks::add(received, r, in_[r]);
   }
   ranks.exchange(sent, received);
-  for (unsigned r = 0; r < ranks.count(); ++r)
-    for (std::size_t k = 0; k < received_[r].size(); ++k) unpack(received_[r][k], &in_[r][k * numbers]);
+  for (unsigned r = 0; r < ranks.count(); ++r) unpack(in_[r].data(), received_[r]);
 }
 
 void Halo::exchange(std::vector<double>& by_body, Ranks& ranks) const {
   exchange(
-      1, [&](std::uint32_t i, double* to) { *to = by_body[i]; },
-      [&](std::uint32_t i, const double* from) { by_body[i] = *from; }, ranks);
+      1, 0,
+      [&](double* to, const Lists& own) {
+        for (const std::uint32_t i : own.bodies) *to++ = by_body[i];
+      },
+      [&](const double* from, const Lists& others) {
+        for (const std::uint32_t i : others.bodies) by_body[i] = *from++;
+      },
+      ranks);
 }
 
 void Halo::exchange(Renumbering& now, Ranks& ranks) const {
   exchange(
-      1, [&](std::uint32_t i, double* to) { *to = now(i); },
-      [&](std::uint32_t i, const double* from) { now.set(i, static_cast<std::uint32_t>(*from)); }, ranks);
+      1, 0,
+      [&](double* to, const Lists& own) {
+        for (const std::uint32_t i : own.bodies) *to++ = now(i);
+      },
+      [&](const double* from, const Lists& others) {
+        for (const std::uint32_t i : others.bodies) now.set(i, static_cast<std::uint32_t>(*from++));
+      },
+      ranks);
 }
 
-void Halo::exchange(Bodies& bodies, Ranks& ranks) const {
+void Halo::exchange(Bodies& bodies, const std::function<double&(std::size_t chunk)>& of_chunk, Ranks& ranks) const {
+  const std::array<LargeArray<Row>*, 3> arrays{&bodies.position, &bodies.velocity, &bodies.spin};
   // Radius, mass and inertia are known.
-  const auto each = [&](std::uint32_t i, auto* at, auto copy) {
-    for (auto* array : {&bodies.position, &bodies.velocity, &bodies.spin}) {
-      Row& row = (*array)[i];
-      copy(row.x, *at++), copy(row.y, *at++), copy(row.z, *at++);
-    }
-  };
+  const std::size_t numbers = 3 * arrays.size();
   exchange(
-      9, [&](std::uint32_t i, double* to) { each(i, to, [](double own, double& sent) { sent = own; }); },
-      [&](std::uint32_t i, const double* from) { each(i, from, [](double& own, double found) { own = found; }); },
+      numbers, 1,
+      [&](double* to, const Lists& own) {
+        for (const std::uint32_t i : own.bodies)
+          for (const auto* array : arrays) {
+            const Row& row = (*array)[i];
+            *to++ = row.x, *to++ = row.y, *to++ = row.z;
+          }
+        for (const std::uint32_t chunk : own.chunks) *to++ = of_chunk(chunk);
+      },
+      [&](const double* from, const Lists& others) {
+        for (const std::uint32_t i : others.bodies)
+          for (auto* array : arrays) {
+            Row& row = (*array)[i];
+            row.x = *from++, row.y = *from++, row.z = *from++;
+          }
+        for (const std::uint32_t chunk : others.chunks) of_chunk(chunk) = *from++;
+      },
       ranks);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grit/archive.hpp"
+#include "ranks/ranks.hpp"
 #include "threads/chunks.hpp"
 
 namespace grit {
@@ -56,12 +57,6 @@ class Skins {
 
   /// Upper bound of the displacement of a chunk's bodies since the search [m].
   double gone(std::size_t chunk) const { return chunk_[chunk].gone; }
-  /// The largest of these [m].
-  double furthest() const {
-    double furthest = 0;
-    for (const Way& own : chunk_) furthest = std::max(furthest, own.gone);
-    return furthest;
-  }
   /// Upper bound of the displacement of walls since the search, or the last one at walls [m].
   double walls_gone() const { return wall_.gone; }
   /// Those since the search along paths, summed over steps, so that they never decrease.
@@ -70,6 +65,8 @@ class Skins {
   /// walls_walked() at the last search at walls.
   double walls_walked_at_search() const { return wall_.walked_at_search; }
 
+  /// Completes those of other ranks' chunks.
+  void complete(Ranks& ranks) { ranks.complete(chunk_); }
   void serialize(Archive& archive) { archive(chunk_, wall_, largest_, reach_); }
 
  private:

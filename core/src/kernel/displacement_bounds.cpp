@@ -68,7 +68,7 @@ void check_wall(const State& state, std::size_t wall, double travel) {
 
 void DisplacementBounds::foresee(const State& state, double dt, Passes& passes) {
   rate_ = rate_of_bodies(state, passes);
-  const double gone = state.lists.skins().furthest();
+  const double gone = state.lists.furthest(passes);
   for (std::size_t w = 0; w < state.walls.size(); ++w)
     rate_ = std::max(rate_, approach_of(state, w, state.walls.expected_motion(w), gone, dt, passes).rate);
 }
@@ -77,7 +77,7 @@ void DisplacementBounds::check_foreseen(State& state, double dt, Passes& passes)
   if (dt * rate_ <= state.settings.guards.travel) return;
   complete_bodies(state, passes);
   check_bodies(state, dt);
-  const double gone = state.lists.skins().furthest();
+  const double gone = state.lists.furthest(passes);
   for (std::size_t w = 0; w < state.walls.size(); ++w)
     check_wall(state, w, dt * approach_of(state, w, state.walls.expected_motion(w), gone, dt, passes).rate);
 }
@@ -88,11 +88,8 @@ void DisplacementBounds::advance(State& state, Passes& passes) {
       dt * state.cell.largest_rate() * 2 *
           (state.statistics.largest_radius + state.lists.skins().largest() + 0.5 * state.lists.skins().reach()) +
       2 * grown_;
-  const double gone = state.lists.advance(dt, strained, passes);
-  double fastest = 0;
-  bool finite = true;
-  for (const ChunkResult& chunk : passes.chunks())
-    fastest = std::max(fastest, chunk.motion.largest_speed), finite = finite && chunk.motion.finite;
+  state.lists.advance(dt, strained, state.halo.chunks(), passes);
+  const auto [overlap, fastest, gone, finite] = passes.extremes();
   rate_ = state.bodies.count() > 0 ? fastest / state.statistics.smallest_radius : 0;
   if (!finite || dt * rate_ > harmless(state)) rate_ = rate_of_bodies(state, passes);
   const double rate_of_bodies_alone = rate_;

@@ -22,7 +22,9 @@ class DisplacementBounds {
   double displacement_rate() const { return rate_; }
 
   /// After a neighbour search, or one at walls only.
-  void rebuild(const State& state, Passes& passes) { walls_.rebuild(state, passes.ranks()); }
+  void rebuild(const State& state, Passes& passes) {
+    walls_.rebuild(state, state.lists.furthest(passes), passes.ranks());
+  }
   /// After a change of walls or of their motions.
   void reset_walls(std::size_t walls) { walls_.reset(walls); }
   /// Takes into account how fast bodies are, and how fast walls will be. The rate is exact where it matters in a step

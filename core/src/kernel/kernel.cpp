@@ -1,6 +1,7 @@
 #include "kernel/kernel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -267,11 +268,8 @@ std::string Kernel::fallen_behind() const {
 }
 
 std::pair<bool, bool> Kernel::any_rank(bool one, bool other) {
-  if (!passes_.ranks().several()) return {one, other};
-  std::pair<bool, bool> any{false, false};
-  for (const auto& of_rank : passes_.ranks().each(std::pair(one, other)))
-    any = {any.first || of_rank.first, any.second || of_rank.second};
-  return any;
+  const auto [any_one, any_other] = passes_.ranks().any(std::array{one, other});
+  return {any_one, any_other};
 }
 
 std::size_t Kernel::contact_count() const {

@@ -1,6 +1,7 @@
 #include "kernel/neighbour_lists.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -30,15 +31,17 @@ struct SkinWidths {
 
 }  // namespace
 
+bool NeighbourLists::used_up(std::size_t chunk) const {
+  return skins_.gone(chunk) + 0.5 * strain_travel_ > skins_.of_chunk(chunk);
+}
+
+bool NeighbourLists::may_be_due(const Ranks& ranks) const {
+  for (std::size_t chunk = ranks.first(); chunk < ranks.last(); ++chunk)
+    if (used_up(chunk)) return true;
+  return false;
+}
+
 bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell, Ranks& ranks) {
-  if (requested_) return true;
-  const auto used_up = [&](std::size_t chunk) {
-    return skins_.gone(chunk) + 0.5 * strain_travel_ > skins_.of_chunk(chunk);
-  };
-  std::vector<std::size_t> chunks;
-  for (std::size_t chunk = 0; chunk < chunks_of(bodies.count()); ++chunk)
-    if (used_up(chunk)) chunks.push_back(chunk);
-  if (chunks.empty()) return false;
   // The sum of the largest speeds is a bound; the true distance is often far less. In a cell that deforms it is the
   // distance relative to the mean flow.
   Vec3 stretch = Vec3::Ones(), from = Vec3::Zero(), to = Vec3::Zero();
@@ -66,18 +69,13 @@ bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell, Ranks&
     }
     return std::sqrt(largest);
   };
-  std::vector<double> ways;
-  if (ranks.several()) {
-    ways.resize(chunks_of(bodies.count()));
-    for (const std::size_t chunk : chunks)
-      if (ranks.owns(chunk)) ways[chunk] = measured(chunk);
-    ranks.complete(ways);
+  bool due = false;
+  for (std::size_t chunk = ranks.first(); chunk < ranks.last(); ++chunk) {
+    if (!used_up(chunk)) continue;
+    skins_.found(chunk, measured(chunk));
+    due = due || skins_.gone(chunk) + 0.5 * strain_travel_ > 0.95 * skins_.of_chunk(chunk);
   }
-  for (const std::size_t chunk : chunks) {
-    skins_.found(chunk, ranks.several() ? ways[chunk] : measured(chunk));
-    if (skins_.gone(chunk) + 0.5 * strain_travel_ > 0.95 * skins_.of_chunk(chunk)) return true;
-  }
-  return false;
+  return ranks.any(due);
 }
 
 void NeighbourLists::lay_skins(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
@@ -124,11 +122,26 @@ void NeighbourLists::begin_search_at_walls(const DeformingCell& cell, const Popu
   ++searches_at_walls_;
 }
 
-double NeighbourLists::advance(double dt, double strained, const Passes& passes) {
+void NeighbourLists::advance(double dt, double strained, std::span<const std::uint32_t> near, const Passes& passes) {
   strain_travel_ += strained;
-  for (std::size_t chunk = 0; chunk < passes.chunks().size(); ++chunk)
+  const auto go = [&](std::size_t chunk) {
     skins_.go(chunk, dt * passes.chunks()[chunk].motion.largest_speed, 0.5 * strained);
-  return skins_.furthest();
+  };
+  for (std::size_t chunk = passes.ranks().first(); chunk < passes.ranks().last(); ++chunk) go(chunk);
+  for (const std::uint32_t chunk : near) go(chunk);
+}
+
+double NeighbourLists::furthest_here(const Passes& passes, double dt) const {
+  double furthest = 0;
+  for (std::size_t chunk = passes.ranks().first(); chunk < passes.ranks().last(); ++chunk)
+    furthest = std::max(furthest, skins_.gone(chunk) + dt * passes.chunks()[chunk].motion.largest_speed);
+  return furthest;
+}
+
+double NeighbourLists::furthest(Passes& passes) const {
+  std::array<double, 1> all{furthest_here(passes)};
+  passes.ranks().largest(all);
+  return all.front();
 }
 
 double NeighbourLists::shortest_period(const Bodies& bodies, const PopulationStatistics& statistics,

@@ -30,8 +30,10 @@ class NeighbourLists {
   void request_rebuild() { requested_ = true; }
   /// The same if reaches of the law have changed since the last rebuild.
   void expect_reaches(const std::vector<double>& reaches) { requested_ = requested_ || reaches != reaches_; }
-  /// Whether a body may have used up its skin. If the sum of maximum speeds does not exclude it, displacements since
-  /// the last rebuild are measured.
+  bool requested() const { return requested_; }
+  /// Whether an own body may have used up its skin, if it was as fast as the fastest of its chunk.
+  bool may_be_due(const Ranks& ranks) const;
+  /// Whether a body has used up most of it: displacements since the last rebuild are measured.
   bool due(const Bodies& bodies, const DeformingCell& cell, Ranks& ranks);
   /// Whether a wall may have used up its skin; then only candidates at walls are found again.
   bool due_at_walls() const { return skins_.walls_gone() > skins_.of_walls(); }
@@ -45,8 +47,12 @@ class NeighbourLists {
   void begin_search_at_walls(const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
                              double wall_speed);
   /// After a step of `dt` [s]; `strained`: upper bound of the approach of two surfaces by strain and growth [m].
-  /// Returns an upper bound of the displacement of bodies since the last rebuild [m].
-  double advance(double dt, double strained, const Passes& passes);
+  /// `near`: chunks of other ranks whose bodies touch own ones.
+  void advance(double dt, double strained, std::span<const std::uint32_t> near, const Passes& passes);
+  /// Upper bound of the displacement of own bodies since the last rebuild, and after a further step of `dt` [m].
+  double furthest_here(const Passes& passes, double dt = 0) const;
+  /// The same of all bodies.
+  double furthest(Passes& passes) const;
   void advance_walls(double distance) { skins_.advance_walls(distance); }
 
   /// The largest of the law's reaches [m], and somewhat more than their rounding errors in single precision.
@@ -56,13 +62,14 @@ class NeighbourLists {
                                 std::span<const double> reaches);
 
   /// Completes what is saved with values of other ranks.
-  void complete(std::size_t bodies, Ranks& ranks) { ranks.complete_bodies(reference_, bodies); }
+  void complete(std::size_t bodies, Ranks& ranks) { skins_.complete(ranks), ranks.complete_bodies(reference_, bodies); }
   void serialize(Archive& archive);
   /// Throws Error unless restored lists fit so many bodies.
   void check_restored(std::size_t bodies) const;
 
  private:
   static constexpr std::uint64_t sort_every = 8;
+  bool used_up(std::size_t chunk) const;
   void lay_skins(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
                  double wall_speed, Passes& passes);
 

@@ -44,21 +44,18 @@ void Passes::divide() {
   for (double& recent : recent_) recent *= 0.5;
 }
 
-void Passes::complete_results(bool energies) {
-  if (!ranks_.several()) return;
-  if (energies) return ranks_.complete(chunks_);
-  struct Result {
-    double overlap, speed;
-    bool finite;
-  };
-  std::vector<Result> results;
-  for (const ChunkResult& chunk : chunks_)
-    results.push_back({chunk.overlap, chunk.motion.largest_speed, chunk.motion.finite});
-  ranks_.complete(results);
-  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
-    chunks_[chunk].overlap = results[chunk].overlap;
-    chunks_[chunk].motion.largest_speed = results[chunk].speed, chunks_[chunk].motion.finite = results[chunk].finite;
+void Passes::find_extremes(double furthest, bool energies) {
+  if (energies) ranks_.complete(chunks_);
+  double overlap = 0, speed = 0;
+  bool finite = true;
+  for (std::size_t chunk = ranks_.first(); chunk < ranks_.last(); ++chunk) {
+    const ChunkResult& own = chunks_[chunk];
+    overlap = std::max(overlap, own.overlap), speed = std::max(speed, own.motion.largest_speed);
+    finite = finite && own.motion.finite;
   }
+  std::array<double, 4> all{overlap, speed, furthest, finite ? 0.0 : 1.0};
+  ranks_.largest(all);
+  extremes_ = {all[0], all[1], all[2], all[3] == 0};
 }
 
 void Passes::serialize(Archive& archive, std::size_t bodies) {

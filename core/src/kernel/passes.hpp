@@ -101,8 +101,15 @@ class Passes {
     const auto found = of_chunks(part);
     return std::accumulate(found.begin(), found.end(), decltype(part(std::size_t{0})){});
   }
-  /// Completes the results of chunks. `energies`: whether more than overlaps and speeds is needed.
-  void complete_results(bool energies);
+  /// Extremes of the results of all chunks.
+  struct Extremes {
+    double overlap = 0, speed = 0;
+    double furthest = 0;  ///< see find_extremes()
+    bool finite = true;
+  };
+  /// Finds them. `furthest`: of own chunks. With `energies`, completes the results of all chunks.
+  void find_extremes(double furthest, bool energies);
+  const Extremes& extremes() const { return extremes_; }
   /// Measures a phase outside each().
   PhaseWatch watch(StepPhase phase) { return {phases_[static_cast<std::size_t>(phase)], team_}; }
   /// Times of all phases; that of each() is divided in proportion to the timed chunks.
@@ -127,6 +134,7 @@ class Passes {
   Ranks ranks_;
   Team team_;
   std::vector<ChunkResult> chunks_;
+  Extremes extremes_;
   // Of each chunk [s]: computing time until times were last collected, and recently: since the last division with half
   // of what it was then.
   std::vector<double> counted_, recent_;

@@ -166,18 +166,30 @@ void Stepper::search_at_walls() {
   bounds_.rebuild(state_, passes_);
 }
 
+void Stepper::follow_bodies() {
+  Ranks& ranks = passes_.ranks();
+  bool search = state_.lists.requested(), renew = false;
+  if (!search) {
+    const bool at_walls = state_.lists.due_at_walls();
+    const auto [may_search, may_renew] =
+        ranks.any(std::array{state_.lists.may_be_due(ranks), !at_walls && time_step_.due(state_, passes_)});
+    search = may_search && state_.lists.due(state_.bodies, state_.cell, ranks), renew = may_renew;
+    if (!search && at_walls) {
+      search_at_walls();
+      renew = ranks.any(time_step_.due(state_, passes_));
+    }
+  }
+  if (search) rebuild();
+  else time_step_.follow(renew, state_, view_, bounds_, passes_);
+}
+
 bool Stepper::prepare() {
   view_.invalidate();
   state_.cell.update_images(state_.time.previous_dt);
   update_surfaces();
   {
     const PhaseWatch watch = passes_.watch(StepPhase::search);
-    if (state_.lists.due(state_.bodies, state_.cell, passes_.ranks())) {
-      rebuild();
-    } else {
-      if (state_.lists.due_at_walls()) search_at_walls();
-      time_step_.follow(state_, view_, bounds_, passes_);
-    }
+    follow_bodies();
   }
   // Contact history advances once per step, even if forces are evaluated again at the start of a stage.
   const bool again = forces_step_ == state_.time.step;
@@ -258,19 +270,20 @@ void Stepper::add_forces_of_engines() {
   view_.invalidate_forces();  // engines may have read forces without their own
 }
 
+void Stepper::find_extremes() {
+  passes_.find_extremes(state_.lists.furthest_here(passes_, state_.time.dt), balance_.is_kept());
+}
+
 void Stepper::take_loads() {
-  passes_.complete_results(balance_.is_kept());
+  find_extremes();
   if (!state_.surfaces.empty()) {
     state_.wall_contacts.loads(loads_, passes_.ranks());
     state_.walls.clear_forces();
     for (std::size_t w = 0; w < loads_.size(); ++w) state_.walls.add(w, loads_[w]);
   }
-  state_.overlap = 0;
-  const auto& chunks = passes_.chunks();
-  for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
-    state_.overlap = std::max(state_.overlap, chunks[chunk].overlap);
-    time_step_.touched(chunk, chunks[chunk].overlap);
-  }
+  state_.overlap = passes_.extremes().overlap;
+  for (std::size_t chunk = passes_.ranks().first(); chunk < passes_.ranks().last(); ++chunk)
+    time_step_.touched(chunk, passes_.chunks()[chunk].overlap);
   balance_.add_losses();
   check_overlap(state_, view_);
 }
@@ -353,7 +366,7 @@ void Stepper::advance() {
     laps(passes_.chunks()[chunk].time_of(StepPhase::motion));
   });
   bodies_moved();
-  passes_.complete_results(balance_.is_kept());
+  find_extremes();
   balance_.after_motion(step);
   and_show_forces([this] { end_step(); });
 }
@@ -412,13 +425,14 @@ void Stepper::step_on() {
 void Stepper::bodies_moved() {
   if (!passes_.ranks().several()) return;
   state_.complete.bodies = false;
-  state_.halo.exchange(state_.bodies, passes_.ranks());
+  state_.halo.exchange(
+      state_.bodies, [this](std::size_t chunk) -> double& { return passes_.chunks()[chunk].motion.largest_speed; },
+      passes_.ranks());
 }
 
 void Stepper::show_forces() {
   state_.added_force.clear(), state_.added_moment.clear();
-  const auto& chunks = passes_.chunks();
-  if (std::ranges::all_of(chunks, [](const ChunkResult& chunk) { return chunk.motion.finite; })) {
+  if (passes_.extremes().finite) {
     update_surfaces();
     sum_forces(true);
     balance_.find_crossing();
@@ -478,7 +492,7 @@ void Stepper::split(ContactTable own) {
 ContactTable Stepper::join() {
   complete_bodies(state_, passes_);
   state_.lists.complete(state_.bodies.count(), passes_.ranks());
-  passes_.complete_results(true);
+  passes_.ranks().complete(passes_.chunks());
   state_.wall_contacts.complete(passes_.ranks());
   ContactTable whole = state_.pairs.joined(passes_.ranks());
   time_step_.renumber(state_.pairs, whole, passes_.ranks());

@@ -54,6 +54,8 @@ class Stepper {
  private:
   /// Operations before contacts. Returns whether this instant has been evaluated before.
   bool prepare();
+  /// Searches neighbours or renews the time step, where bodies have moved far enough.
+  void follow_bodies();
   void rebuild();
   /// Whether each rank rebuilds with all bodies: some parts need them.
   bool rebuilds_whole() const;
@@ -78,6 +80,7 @@ class Stepper {
   void sum_forces(bool again);
   void check_finite(const ActingEngine& one, std::span<const Row> force, std::span<const Row> moment) const;
   void add_forces_of_engines();
+  void find_extremes();
   /// Collects the results of chunks for walls and guards.
   void take_loads();
   bool can_move_at_once() const;

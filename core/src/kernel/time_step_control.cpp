@@ -81,15 +81,23 @@ void TimeStepControl::set(State& state, const World& world, DisplacementBounds& 
   requested_ = false;
 }
 
-void TimeStepControl::follow(State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
-  const Settings& settings = state.settings;
-  const CriticalStep::Change change{renew_distance * state.statistics.mean_diameter, stiffening_.least_overlap()};
+CriticalStep::Change TimeStepControl::change_that_matters(const State& state) const {
+  return {renew_distance * state.statistics.mean_diameter, stiffening_.least_overlap()};
+}
+
+bool TimeStepControl::due(const State& state, const Passes& passes) const {
   // Nothing depends on contacts then; the critical step is evaluated at rebuilds only, for reports.
-  const bool unchecked = settings.time_step.value && settings.time_step.allow_unstable;
+  const bool unchecked = state.settings.time_step.value && state.settings.time_step.allow_unstable;
+  return !requested_ && !unchecked &&
+         critical_.due(state.wall_contacts, state.lists.skins(), change_that_matters(state), passes.ranks());
+}
+
+void TimeStepControl::follow(bool due, State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
+  const Settings& settings = state.settings;
   if (requested_) set(state, world, bounds, passes);
   // Contacts form long before the next rebuild.
-  else if (!unchecked && critical_.due(state.wall_contacts, state.lists.skins(), change, passes.ranks()))
-    choose(critical_.renew(near_contacts(state, passes), change, passes.team()), state, bounds);
+  else if (due)
+    choose(critical_.renew(near_contacts(state, passes), change_that_matters(state), passes.team()), state, bounds);
   else if (!settings.time_step.value &&
            state.time.dt * bounds.displacement_rate() > max_displacement(settings.time_step, settings.guards))
     choose(contacts_, state, bounds);

@@ -20,10 +20,12 @@ class TimeStepControl {
   /// Sets the time step from all contacts. Throws NumericsError if a prescribed value is above the critical one, Error
   /// if nothing limits it.
   void set(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
-  /// Before an evaluation without a rebuild: sets the time step if requested; otherwise updates it for new and stiffer
-  /// contacts where bodies have moved or been compressed far enough, and for speeds. A prescribed step that may be
-  /// unstable needs no updates.
-  void follow(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
+  /// Whether own bodies have moved or been compressed so far that contacts are new or stiffer. A prescribed step that
+  /// may be unstable needs no updates.
+  bool due(const State& state, const Passes& passes) const;
+  /// Before an evaluation without a rebuild: sets the time step if requested; otherwise updates it, for such contacts
+  /// if it is `due` on any rank, and for speeds.
+  void follow(bool due, State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
   /// Whether the next evaluation may find stiffer springs.
   bool may_stiffen(const State& state, const DisplacementBounds& bounds) const {
     return stiffening_.may_exceed(state, bounds);
@@ -48,6 +50,7 @@ class TimeStepControl {
   }
 
  private:
+  CriticalStep::Change change_that_matters(const State& state) const;
   CriticalStep::Instant near_contacts(const State& state, Passes& passes) const;
   double critical_step(const Demand& contacts, const State& state) const;
   /// The step that stability and impacts allow, or the prescribed one.

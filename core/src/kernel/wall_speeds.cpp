@@ -65,8 +65,7 @@ double arm(const State& state, std::size_t wall, const Vec3& axis, double gone, 
 
 }  // namespace
 
-void WallSpeeds::rebuild(const State& state, Ranks& ranks) {
-  const double gone = state.lists.skins().furthest();
+void WallSpeeds::rebuild(const State& state, double gone, Ranks& ranks) {
   for (std::size_t w = 0; w < state.walls.size(); ++w) {
     arms_[w] = {};  // bodies have moved
     const Vec3& spin = state.walls.states()[w].spin;

@@ -17,9 +17,10 @@ class WallSpeeds {
  public:
   /// After a change of walls or of their motions.
   void reset(std::size_t walls) { arms_.assign(walls, {}); }
-  /// After a neighbour search, or one at walls only.
-  void rebuild(const State& state, Ranks& ranks);
-  /// Speed in any direction [m/s]. `gone`: upper bound of the displacement of bodies since the neighbour search [m].
+  /// After a neighbour search, or one at walls only. `gone`: upper bound of the displacement of bodies since the
+  /// former [m].
+  void rebuild(const State& state, double gone, Ranks& ranks);
+  /// Speed in any direction [m/s].
   double speed(const State& state, std::size_t wall, const WallMotion& motion, double gone, Ranks& ranks);
   /// Speed along the normal of the surface [m/s]: a flat wall may move in its own plane at any speed.
   double normal_speed(const State& state, std::size_t wall, const WallMotion& motion, double gone, Ranks& ranks);

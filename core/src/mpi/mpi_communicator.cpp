@@ -44,6 +44,10 @@ class MpiCommunicator final : public Communicator {
     MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_UINT64_T, MPI_SUM, all_);
   }
 
+  void largest(std::span<double> numbers) override {
+    MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE, MPI_MAX, all_);
+  }
+
   void exchange(std::span<const Message> sent, std::span<const Message> received) override {
     requests_.clear();
     for (const Message& one : received)
@@ -99,7 +103,7 @@ class MpiCommunicator final : public Communicator {
 }  // namespace
 }  // namespace grit
 
-extern "C" [[gnu::visibility("default")]] grit::Communicator* grit_mpi() {
+extern "C" [[gnu::visibility("default")]] grit::Communicator* GRIT_MPI_ENTRY() {
   static grit::MpiCommunicator all;
   return &all;
 }

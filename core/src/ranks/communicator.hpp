@@ -25,6 +25,8 @@ class Communicator {
   virtual void gather(std::span<std::byte> all, std::span<const std::size_t> starts) = 0;
   /// Adds the numbers of all ranks, entry by entry.
   virtual void sum(std::span<std::uint64_t> numbers) = 0;
+  /// Takes the largest of all ranks, entry by entry.
+  virtual void largest(std::span<double> numbers) = 0;
   /// Sends some messages and receives others, of known lengths: at most one to and one from each rank.
   virtual void exchange(std::span<const Message> sent, std::span<const Message> received) = 0;
   /// The last call of each rank: waits for the others. False if they have not called it within so many seconds.

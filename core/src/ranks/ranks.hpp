@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -67,16 +69,21 @@ class Ranks {
   }
   /// Adds the numbers of all ranks, entry by entry.
   void sum(std::span<std::uint64_t> numbers) {
-    if (!several()) return;
-    refuse_alone();
-    const Stopwatch watch(traffic_.seconds);
-    ++traffic_.gathers, traffic_.gathered += static_cast<double>(numbers.size_bytes());
-    all_->sum(numbers);
+    reduce(numbers, [&] { all_->sum(numbers); });
   }
-  bool any(bool own) {
-    if (!several()) return own;
-    const auto found = each(static_cast<char>(own));
-    return std::ranges::find(found, 1) != found.end();
+  /// Takes the largest of all ranks, entry by entry; they are numbers.
+  void largest(std::span<double> numbers) {
+    reduce(numbers, [&] { all_->largest(numbers); });
+  }
+  bool any(bool own) { return any(std::array{own}).front(); }
+  /// For each entry, whether any rank says so.
+  template <std::size_t count>
+  std::array<bool, count> any(std::array<bool, count> own) {
+    std::array<std::uint64_t, count> ranks{};
+    std::ranges::copy(own, ranks.begin());
+    sum(ranks);
+    for (std::size_t k = 0; k < count; ++k) own[k] = ranks[k] > 0;
+    return own;
   }
   /// Sends a list to each rank, and returns the list from each.
   template <class T>
@@ -139,6 +146,14 @@ class Ranks {
     const Stopwatch watch(traffic_.seconds);
     ++traffic_.gathers, traffic_.gathered += static_cast<double>(all.size() - (starts[rank() + 1] - starts[rank()]));
     all_->gather(all, starts);
+  }
+  template <class T, class Work>
+  void reduce(std::span<T> numbers, Work work) {
+    if (!several()) return;
+    refuse_alone();
+    const Stopwatch watch(traffic_.seconds);
+    ++traffic_.gathers, traffic_.gathered += static_cast<double>(numbers.size_bytes());
+    work();
   }
   void refuse_alone() const;
 
