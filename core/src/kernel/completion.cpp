@@ -10,9 +10,10 @@ void complete_bodies(State& state, Passes& passes) {
   const auto complete = [&](auto&... arrays) {
     ((arrays.empty() ? void() : passes.ranks().complete_bodies(arrays, bodies.count())), ...);
   };
-  complete(bodies.position, bodies.velocity, bodies.spin, bodies.rotation);
+  // Origins move with bodies that re-enter a periodic cell.
+  complete(bodies.position, bodies.velocity, bodies.spin, bodies.rotation, bodies.origin);
   if (!state.complete.identities) {
-    complete(bodies.id, bodies.material, bodies.origin);
+    complete(bodies.id, bodies.material);
     find_groups(state);
   }
   state.complete.bodies = state.complete.identities = true;

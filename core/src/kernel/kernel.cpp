@@ -119,6 +119,7 @@ Prepared Kernel::hand_over() {
 
 void Kernel::begin_stage(const std::string& name, const SceneDescription& scene, const Components& components) {
   state_.stage = name;
+  complete_bodies(state_, passes_);
   state_.bodies.start_paths();
   state_.cell.begin_stage();
   state_.walls.apply(scene, components);
