@@ -40,15 +40,16 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_plm_rsh_agent=$folder/remote OMPI_MCA_btl=tcp,self OMPI_MCA_mpi_yield_when_idle=1
 export OMPI_MCA_btl_tcp_if_include=10.77.0.0/24 OMPI_MCA_oob_tcp_if_include=10.77.0.0/24
 export OMPI_MCA_oob_tcp_keepalive_time=10 OMPI_MCA_oob_tcp_keepalive_intvl=5 OMPI_MCA_oob_tcp_keepalive_probes=3
+often=(--set '/output/checkpoint_every="1 s"')
 on_both() {
   ip netns exec $one unshare --uts sh -c "hostname $one; exec \"\$@\"" - mpirun -n 2 --host 10.77.0.1:1,10.77.0.2:1 "$grit" run "$description" \
-    --threads 1 --quiet --no-report "$@"
+    --threads 1 --quiet --no-report "${often[@]}" "$@"
 }
 same() {
   /usr/bin/python3 scripts/same_results.py "$folder/alone" "$1" > "$folder/differences" || { cat "$folder/differences" >&2; exit 1; }
 }
 
-"$grit" run "$description" --threads 1 --quiet --no-report --out "$folder/alone" > /dev/null
+"$grit" run "$description" --threads 1 --quiet --no-report "${often[@]}" --out "$folder/alone" > /dev/null
 seconds=$SECONDS
 on_both --out "$folder/both" > "$folder/log" 2>&1 || { cat "$folder/log" >&2; echo "hosts: the run on two hosts failed" >&2; exit 1; }
 seconds=$((SECONDS - seconds))
@@ -65,6 +66,8 @@ grep -q "lost communication with a remote daemon" "$folder/log" || { cat "$folde
 sleep 2
 ! pgrep -f -- "--out $folder/cut" > /dev/null || { echo "hosts: processes were left after the cut" >&2; exit 1; }
 echo "cable cut: mpirun reports it after $((SECONDS - cut - 2)) s, exit status $status, no process is left"
-"$grit" run "$description" --threads 2 --quiet --no-report --out "$folder/cut" --resume > /dev/null
+"$grit" run "$folder/cut" --threads 2 --quiet --no-report --resume > /dev/null
 same "$folder/cut"
-echo "continued in one process: same bits"
+step=$(sed -n 's/.*"resumed_at_step": *\([0-9]*\).*/\1/p' "$folder/cut/run.json")
+[[ ${step:-0} -gt 0 ]] || { echo "hosts: there was no checkpoint yet; give a longer description" >&2; exit 1; }
+echo "continued from step $step in one process: same bits"

@@ -69,7 +69,7 @@ Migration::Migration(const Bodies& bodies, const std::vector<bool>& leaves, cons
     : before_(bodies.count()) {
   std::vector<std::uint32_t> chunks(ranks.last() - ranks.first());
   std::iota(chunks.begin(), chunks.end(), static_cast<std::uint32_t>(ranks.first()));
-  // Bodies that are removed count here, too: where all lie in one box, this is the order of those that stay.
+  // Bodies that leave shape the curve, too, as they do in spatial_order().
   Extent box = extent(bodies, chunks, team);
   for (const Extent& of_rank : ranks.each(box)) box.add(of_rank);
   box.take_periods(cell);

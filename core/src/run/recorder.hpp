@@ -53,7 +53,7 @@ struct RunSummary {
   double contacts_per_body = 0;  ///< 2 × contacts / bodies, mean over the samples
   double wall_seconds = 0;       ///< of the stepping
   double particle_steps_per_second = 0;
-  std::size_t rebuilds = 0;  ///< of the neighbour lists
+  std::size_t rebuilds = 0;         ///< of the neighbour lists
   unsigned threads = 1, ranks = 1;  ///< threads of each rank
   std::optional<Sharing> sharing;   ///< among ranks
   std::vector<PhaseTime> phases;
