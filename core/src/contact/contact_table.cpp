@@ -281,25 +281,32 @@ void ContactTable::sort_pairs(std::size_t chunk, std::span<const Candidate> foun
 
 void ContactTable::make_inbox(std::size_t bodies) {
   const auto pad = static_cast<std::uint32_t>(bodies);
-  std::vector<std::uint32_t> next_near(bodies, 0), next_far(bodies, 0);
-  const auto next = [&](std::size_t c) -> std::uint32_t& { return (near_[c] != 0 ? next_near : next_far)[b_[c]]; };
+  std::vector<std::uint32_t> next(chunks_.size() + 1, 0);
   for (std::size_t c = first_cross_; c < b_.size(); ++c)
-    if (b_[c] != pad) ++next(c);
-  std::uint32_t place = 0;
+    if (b_[c] != pad) ++next[b_[c] / chunk_bodies + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
   for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
-    const std::size_t first = chunk * chunk_bodies, last = std::min(bodies, first + chunk_bodies);
-    const auto lay_out = [&](std::vector<std::uint32_t>& counts) {
-      for (std::size_t i = first; i < last; ++i) place += std::exchange(counts[i], place);
-    };
-    chunks_[chunk].inbox_first = place;
-    lay_out(next_near);
-    chunks_[chunk].inbox_far = place;
-    lay_out(next_far);
-    chunks_[chunk].inbox_last = place;
+    chunks_[chunk].inbox_first = next[chunk];
+    chunks_[chunk].inbox_last = next[chunk + 1];
   }
-  make_room(inbox_, place);
+  make_room(inbox_, next.back());
   for (std::size_t c = first_cross_; c < b_.size(); ++c)
-    if (b_[c] != pad) inbox_[next(c)++] = {static_cast<std::uint32_t>(c - first_cross_), b_[c]};
+    if (b_[c] != pad) inbox_[next[b_[c] / chunk_bodies]++] = {static_cast<std::uint32_t>(c - first_cross_), b_[c]};
+  for (Chunk& chunk : chunks_) sort_inbox(chunk);
+}
+
+void ContactTable::sort_inbox(Chunk& chunk) {
+  const auto kind = [this](const Letter& one) {
+    return (near_[first_cross_ + one.row] != 0 ? 0 : chunk_bodies) + one.body % chunk_bodies;
+  };
+  std::array<std::uint32_t, 2 * chunk_bodies + 1> next{};
+  const std::vector<Letter> letters(inbox_.begin() + std::ptrdiff_t(chunk.inbox_first),
+                                    inbox_.begin() + std::ptrdiff_t(chunk.inbox_last));
+  for (const Letter& one : letters) ++next[kind(one) + 1];
+  next[0] = chunk.inbox_first;
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  chunk.inbox_far = next[chunk_bodies];
+  for (const Letter& one : letters) inbox_[next[kind(one)]++] = one;
 }
 
 void ContactTable::gather(std::size_t chunk, BodySum* sum) const {

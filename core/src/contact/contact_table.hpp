@@ -271,6 +271,7 @@ class ContactTable {
   /// The same of the pairs in some blocks of a chunk.
   void check_restored(std::size_t chunk, Blocks blocks, bool within) const;
   void make_inbox(std::size_t bodies);
+  void sort_inbox(Chunk& chunk);
   void find_reached();
 
   std::size_t bodies_ = 0;
