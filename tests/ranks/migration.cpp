@@ -51,7 +51,7 @@ TEST_P(Sorted, LikeByOneRank) {
   std::erase_if(order, [&](std::uint32_t i) { return leaves[i]; });
   Bodies after = before;
   after.reorder(order, team);
-  const std::vector<std::uint32_t> present = present_indices(order, body_count);
+  const Renumbering present(order, body_count);
 
   on_ranks(GetParam(), [&](Communicator& all) {
     Team own_team(1);
@@ -68,7 +68,8 @@ TEST_P(Sorted, LikeByOneRank) {
     for (std::size_t chunk = 0; chunk < uneven.size(); ++chunk) uneven[chunk] = 1.0 + static_cast<double>(chunk);
     ranks.divide(uneven);
     const Renumbering now = migration.move(bodies, ranks);
-    for (std::size_t i = first; i < last; ++i) ASSERT_EQ(now(static_cast<std::uint32_t>(i)), present[i]) << i;
+    for (std::size_t i = first; i < last; ++i)
+      ASSERT_EQ(now(static_cast<std::uint32_t>(i)), present(static_cast<std::uint32_t>(i))) << i;
     ASSERT_EQ(bodies.count(), after.count());
     for (std::size_t i = 0; i < after.count(); ++i) {
       if (!ranks.owns_body(i)) continue;
@@ -100,7 +101,6 @@ TEST(Surroundings, HaveWhatIsNear) {
     Bodies bodies = known(all_bodies, ranks);
     Surroundings surroundings;
     surroundings.find(bodies, cell, skins, ranks, own_team);
-    EXPECT_LE(surroundings.chunks().size(), chunks_of(body_count));
     NeighbourSearch search;
     search.build(bodies, surroundings.chunks(), cell, skins, own_team);
     for (std::uint32_t i = 0; i < body_count; ++i) {

@@ -77,7 +77,7 @@ TEST_P(SameBits, OnThreeRanks) {
   });
 }
 
-// Every eighth search sorts bodies and divides them among the ranks anew, by measured times.
+// Every eighth search sorts bodies and divides them among the ranks again, by measured times.
 TEST_P(SameBits, WhenBodiesMigrate) {
   constexpr std::size_t steps = 90, search_every = 2;
   SharedRun alone(GetParam());

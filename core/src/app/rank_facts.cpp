@@ -6,7 +6,6 @@
 #include <array>
 #include <boost/crc.hpp>
 #include <cmath>
-#include <span>
 
 #include "output/own_files.hpp"
 #include "output/plugins_used.hpp"

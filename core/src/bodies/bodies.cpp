@@ -181,17 +181,17 @@ void Bodies::reorder(std::span<const std::uint32_t> order, Team& team) {
   each(position, velocity, spin, id, material, rotation, origin);
   if (clumps.none()) return;
   each(clumps.of_body, clumps.volume_fraction);
-  const std::vector<std::uint32_t> now = present_indices(order, before);
+  const Renumbering now(order, before);
   std::vector<Clump> kept;
   std::vector<std::uint32_t> spheres;
   // Clumps have the order of their first spheres, so that those of neighbouring bodies are close in memory.
-  const auto place = [&](const Clump& clump) { return now[clumps.spheres[clump.first]]; };
+  const auto place = [&](const Clump& clump) { return now(clumps.spheres[clump.first]); };
   std::ranges::sort(clumps.clump, {}, place);
   for (Clump clump : clumps.clump) {
     if (place(clump) == body_gone) break;
     const auto first = static_cast<std::uint32_t>(spheres.size());
     for (std::uint32_t k = clump.first; k < clump.last; ++k) {
-      spheres.push_back(now[clumps.spheres[k]]);
+      spheres.push_back(now(clumps.spheres[k]));
       clumps.of_body[spheres.back()].clump = static_cast<std::uint32_t>(kept.size());
     }
     clump.first = first, clump.last = static_cast<std::uint32_t>(spheres.size());

@@ -6,34 +6,23 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 namespace grit {
 
 /// Index that marks a body as removed.
 inline constexpr std::uint32_t body_gone = ~0u;
 
-/// The present index of each body by its former one, or body_gone. `order[i]` is the former index of the body that now
-/// has index i; empty if all have left. Bodies may have been appended since there were `before` of them.
-inline std::vector<std::uint32_t> present_indices(std::span<const std::uint32_t> order, std::size_t before) {
-  const std::size_t known = order.empty() ? 0 : std::size_t{std::ranges::max(order)} + 1;
-  std::vector<std::uint32_t> now(std::max(before, known), body_gone);
-  for (std::size_t i = 0; i < order.size(); ++i) now[order[i]] = static_cast<std::uint32_t>(i);
-  return now;
-}
-
-/// The same, where a rank may know some bodies only.
+/// The present index of each body by its former one, or body_gone. A rank may know some bodies only.
 class Renumbering {
  public:
   /// No index has changed.
   Renumbering() = default;
-  /// As present_indices().
+  /// `order[i]` is the former index, below `before`, of the body that now has index i. Others have left.
   Renumbering(std::span<const std::uint32_t> order, std::size_t before) : Renumbering(before) {
     std::fill_n(now_.get(), before, body_gone);
-    for (std::size_t i = 0; i < order.size(); ++i)
-      if (order[i] < before) now_[order[i]] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < order.size(); ++i) now_[order[i]] = static_cast<std::uint32_t>(i);
   }
-  /// Of `before` bodies, none of which is known yet: each must be set() before it is asked for.
+  /// Of `before` bodies, none of which is known yet: each must be set() before it is read.
   explicit Renumbering(std::size_t before) : now_(new std::uint32_t[before]) {}  // pages that are not used cost nothing
 
   bool changes() const { return now_ != nullptr; }

@@ -29,7 +29,7 @@ class SharingRecord {
   Sharing sharing(double imbalance) const;
 
  private:
-  std::uint64_t step_ = 0;  // of the last search
+  std::uint64_t step_ = 0;  // of the last steps_end()
   Traffic before_;          // that of this rank before the present steps or search
   // Sums over searches, of all ranks.
   double searches_ = 0, steps_ = 0;  // times the number of ranks

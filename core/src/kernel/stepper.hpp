@@ -63,7 +63,7 @@ class Stepper {
   std::vector<bool> wrap_bodies(bool whole);
   /// Records bodies that leave.
   void discharge(const std::vector<bool>& leaves, bool whole);
-  /// Sorts bodies in space without those that leave, and divides them among the ranks anew.
+  /// Sorts bodies in space without those that leave, and divides them among the ranks again.
   Renumbering sort_bodies(const std::vector<bool>& leaves, bool some_leave, bool whole);
   /// Finds candidates at walls again; neighbour lists stay.
   void search_at_walls();
