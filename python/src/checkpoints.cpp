@@ -22,7 +22,7 @@ void check_fits(const SavedState& saved, const Description& facts) {
 }
 
 void write_saved(const std::filesystem::path& path, const SavedState& saved) {
-  write_state(path, {*saved.facts, saved.checkpoint}, {}, free_temporary_path(path));
+  write_state(path, *saved.facts, saved.checkpoint, {}, free_temporary_path(path));
 }
 
 SavedState read_saved(const std::filesystem::path& path) try {

@@ -34,7 +34,7 @@ class CheckpointFile : public testing::Test {
     return error_of<Kind>([this] { read_checkpoint(path_, facts_); });
   }
   /// Writes one with other facts, as from another build.
-  void rewrite(const std::string& facts, std::uint64_t format = 5) const {
+  void rewrite(const std::string& facts, std::uint64_t format = 6) const {
     hdf5::File file(path_, hdf5::Mode::write_whole);
     file.set_attribute("format", format);
     file.set_attribute("stage", "shear");
@@ -101,7 +101,7 @@ TEST_F(CheckpointFile, OfAnotherGritIsRefused) {
   EXPECT_THAT(refusal<FileError>(),
               AllOf(HasSubstr("checkpoint.h5: was written by another grit"), HasSubstr("/compiler: found ")));
   rewrite(facts_text(), 1);
-  EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5: found format 1, allowed 5"));
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5: found format 1, allowed 6"));
   rewrite(R"({"grit": {}, "plugins": {}, "description": )" + std::string(8000, '[') + std::string(8000, ']') + '}');
   EXPECT_THAT(refusal<FileError>(), HasSubstr("its facts are not JSON")) << "too deep to be copied";
   rewrite("{");

@@ -239,7 +239,7 @@ TEST(ResultsFolder, ContinuesAResumedRun) {
       results.stage_ended(world, "step " + std::to_string(world.steps));
       if (world.steps == 20) results.flush(), extent = saved_state(results);
     }
-    results.checkpoint({"stage", 0, 20, {}});
+    results.checkpoint(Checkpoint{"stage", 0, 20, {}});
   }
   auto more = options(folder / "run");
   more.existing = Existing::resume;
@@ -251,7 +251,7 @@ TEST(ResultsFolder, ContinuesAResumedRun) {
   sample(results, world, 0.002, 0.6);
   RunSummary summary;
   summary.status = "done";
-  results.final_state({"stage", 0, 21, {}});
+  results.final_state(Checkpoint{"stage", 0, 21, {}});
   results.finish(world, summary);
   const auto series = hdf5::File(folder / "run/series.h5", hdf5::Mode::read);
   EXPECT_THAT(series.group("test").dataset("step").read<int>(), ElementsAre(10, 20, 21));
@@ -278,7 +278,7 @@ struct KilledRun {
       results.frame(world, {});
       if (world.steps != 20) continue;
       results.flush(), state = saved_state(results);
-      results.checkpoint({"stage", 0, 20, {}});
+      results.checkpoint(Checkpoint{"stage", 0, 20, {}});
     }
     results.flush();
   }
@@ -365,8 +365,8 @@ TEST(ResultsFolder, KeepsItsLastTwoCheckpointsUntilItIsDone) {
   ResultsFolder results(wanted);
   results.begin(world, probes);
   const auto step_of = [&](const char* file) { return read_checkpoint(folder / file, wanted.facts).step; };
-  for (const std::uint64_t step : {10u, 20u, 30u}) results.checkpoint({"stage", 0, step, {}});
-  results.final_state({"stage", 0, 40, {}});
+  for (const std::uint64_t step : {10u, 20u, 30u}) results.checkpoint(Checkpoint{"stage", 0, step, {}});
+  results.final_state(Checkpoint{"stage", 0, 40, {}});
   EXPECT_EQ(step_of("run/checkpoint.h5"), 30u);
   EXPECT_EQ(step_of("run/checkpoint-previous.h5"), 20u);
   EXPECT_EQ(step_of("run/final.h5"), 40u);

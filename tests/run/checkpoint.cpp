@@ -492,16 +492,21 @@ TEST(Checkpoint, ThatWasAlteredIsRefused) {
     EXPECT_THAT(refusal(d, altered), HasSubstr(words));
   };
   const double unknown = std::numeric_limits<double>::quiet_NaN();
-  expect(state.with(state.part("bodies") + 8, unknown), "the place, the size or the motion of a body is not a number");
-  // Contacts: the number of bodies, chunks of six numbers each, then the first bodies of pairs.
-  const std::size_t contacts = state.part("contacts"), chunks = state.read<std::uint64_t>(contacts + 8),
-                    pairs = contacts + 16 + 24 * chunks;
-  ASSERT_GT(state.read<std::uint64_t>(pairs), 100u);
-  expect(state.with(pairs + 8, nowhere), "a contact is of a body that is not there");
+  // Bodies: their number, whether they have rotations and origins, positions.
+  const std::size_t bodies = state.part("bodies", 2);
+  ASSERT_GT(state.read<std::uint64_t>(bodies), 100u);
+  expect(state.with(bodies + 10, unknown), "the place, the size or the motion of a body is not a number");
+  expect(state.with(bodies, std::uint64_t{1} << 60), "the saved state is too short");
+  // Contacts: the number of bodies; by chunk the blocks of pairs that touch and of all, whether they have images and a
+  // reach, and the first bodies of pairs.
+  const std::size_t contacts = state.part("contacts", 2), blocks = contacts + 8, flags = blocks + 8;
+  ASSERT_GT(state.read<std::uint32_t>(blocks + 4), 10u);
+  expect(state.with(flags + 2, nowhere), "a contact is of a body that is not there");
   expect(state.with(contacts, std::uint64_t{7}), "contacts are of another number of bodies");
-  expect(state.with(contacts + 16, nowhere), "contacts of bodies are not one after the other");
+  expect(state.with(blocks, nowhere), "there are more contacts than bodies have");
+  expect(state.with(blocks + 4, nowhere), "the saved state is too short");
   // Contacts with walls: chunks, each with the places of its walls, and the bodies near them.
-  const std::size_t near = state.part("wall contacts", 2) + 8, places = state.read<std::uint64_t>(near);
+  const std::size_t near = state.part("wall contacts", 3) + 8, places = state.read<std::uint64_t>(near);
   ASSERT_EQ(places, 2u);
   expect(state.with(near + 8, nowhere), "bodies near walls are of other walls");
   ASSERT_GT(state.read<std::uint64_t>(near + 8 + 4 * places), 0u);
@@ -514,8 +519,8 @@ TEST(Checkpoint, OfAnotherVersionOfAPartIsRefused) {
   const Description d = servo();
   const SavedState state = saved(d, 20);
   const std::size_t version = sizeof(std::uint32_t);
-  EXPECT_THAT(refusal(d, state.with(state.part("neighbour lists") - version, std::uint32_t{2})),
-              HasSubstr("the saved state of \"neighbour lists\" has version 2, allowed is 1"));
+  EXPECT_THAT(refusal(d, state.with(state.part("neighbour lists", 2) - version, std::uint32_t{3})),
+              HasSubstr("the saved state of \"neighbour lists\" has version 3, allowed is 2"));
   EXPECT_THAT(refusal(d, state.with(state.part("streams") - version - 1, 'x')),
               HasSubstr("the saved state holds other parts: \"streams\" is missing, found is \"streamx\";"));
   EXPECT_THAT(refusal(d, state.with(state.part("streams") - version - 1, '\x1b')),

@@ -2,12 +2,19 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <barrier>
+#include <condition_variable>
 #include <cstring>
+#include <deque>
 #include <exception>
 #include <functional>
+#include <map>
+#include <mutex>
+#include <span>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "ranks/communicator.hpp"
@@ -28,9 +35,30 @@ class Board {
     take(shown_);
     meet();
   }
+  /// A message between two ranks, of which no other rank knows.
+  void send(unsigned from, unsigned to, std::span<const std::byte> bytes) {
+    const std::lock_guard lock(mutex_);
+    letters_[{from, to}].emplace_back(bytes.begin(), bytes.end());
+    longest_letter_ = std::max(longest_letter_, bytes.size());
+    arrived_.notify_all();
+  }
+  std::vector<std::byte> receive(unsigned from, unsigned to) {
+    std::unique_lock lock(mutex_);
+    auto& letters = letters_[{from, to}];
+    arrived_.wait(lock, [&] { return !letters.empty() || failed_; });
+    if (letters.empty()) throw std::runtime_error("another rank has failed");
+    std::vector<std::byte> first = std::move(letters.front());
+    letters.pop_front();
+    return first;
+  }
+  std::size_t longest_letter() const { return longest_letter_; }
   /// A rank ends by an exception: the others must not wait for it.
   void leave() {
-    failed_ = true;
+    {
+      const std::lock_guard lock(mutex_);
+      failed_ = true;
+    }
+    arrived_.notify_all();
     barrier_.arrive_and_drop();
   }
 
@@ -43,6 +71,10 @@ class Board {
   std::vector<std::vector<Communicator::Message>> shown_;
   std::barrier<> barrier_;
   std::atomic<bool> failed_{false};
+  std::size_t longest_letter_ = 0;
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::map<std::pair<unsigned, unsigned>, std::deque<std::vector<std::byte>>> letters_;  // by sender and receiver
 };
 
 class ThreadRank final : public Communicator {
@@ -64,14 +96,18 @@ class ThreadRank final : public Communicator {
   void largest(std::span<double> numbers) override {
     reduce(numbers, [](double a, double b) { return std::max(a, b); });
   }
-  void exchange(std::span<const Message> sent, std::span<const Message> received) override {
-    board_.share(rank_, {sent.begin(), sent.end()}, [&](const auto& shown) {
-      for (const Message& one : received) {
-        const auto from = std::ranges::find(shown[one.rank], rank_, &Message::rank);
-        if (from == shown[one.rank].end()) throw std::logic_error("a message was not sent");
-        copy(from->bytes, one.bytes);
+  void transpose(std::span<std::uint64_t> by_rank) override {
+    std::vector<std::uint64_t> own(by_rank.begin(), by_rank.end());
+    board_.share(rank_, {{rank_, std::as_writable_bytes(std::span(own))}}, [&](const auto& shown) {
+      for (unsigned r = 0; r < count(); ++r) {
+        const auto theirs = shown[r].front().bytes.subspan(rank_ * sizeof(std::uint64_t), sizeof(std::uint64_t));
+        copy(theirs, std::as_writable_bytes(by_rank.subspan(r, 1)));
       }
     });
+  }
+  void exchange(std::span<const Message> sent, std::span<const Message> received) override {
+    for (const Message& one : sent) board_.send(rank_, one.rank, one.bytes);
+    for (const Message& one : received) copy(board_.receive(one.rank, rank_), one.bytes);
   }
   bool finish(double) override {
     board_.share(rank_, {}, [](const auto&) {});

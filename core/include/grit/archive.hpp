@@ -9,8 +9,10 @@
 #include <cstdint>
 #include <cstring>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <unordered_map>
@@ -46,10 +48,16 @@ inline constexpr bool plain_numbers<std::array<T, N>> = plain_numbers<T>;
 /// members that do not fit together before they are used as indices or lengths.
 class Archive {
  public:
+  using Take = std::function<void(std::span<const std::byte>)>;
+
   /// An empty archive, to save into.
   Archive() = default;
+  /// The same, but it passes its bytes on instead of keeping them: pieces of `piece` bytes, and the rest in flush().
+  explicit Archive(Take take) : take_(std::move(take)) {}
   /// An archive to restore from; `saved` are the bytes() of an earlier one.
   explicit Archive(std::vector<std::byte> saved) : bytes_(std::move(saved)), restoring_(true) {}
+
+  static constexpr std::size_t piece = std::size_t{1} << 20;
 
   bool restoring() const { return restoring_; }
   /// Saves or restores the members in this order. Throws Error if the archive has too few bytes to restore them.
@@ -57,6 +65,24 @@ class Archive {
   void operator()(Members&... members) {
     (one(members), ...);
   }
+
+  /// Saves or restores values without their number, which is known otherwise.
+  template <class T>
+  void values(std::span<T> all) {
+    static_assert(plain_numbers<T>);
+    raw(all.data(), all.size());
+  }
+  /// Appends what another archive has saved.
+  void append(std::span<const std::byte> saved) { save(saved); }
+  /// Saves or restores the length of a list, whose entries take at least so many bytes each.
+  std::size_t length(std::size_t now, std::size_t bytes) {
+    std::uint64_t count = now;
+    one(count);
+    if (restoring_) need(bytes, count);
+    return count;
+  }
+  /// Throws Error if the archive has too few bytes to restore so many entries.
+  void expect(std::size_t entries, std::size_t bytes) const { need(bytes, entries); }
 
   /// Begins a part, such as the state of one component: saves its name and version. Restoring throws Error if another
   /// part, or another version of it, was saved here. Raise the version whenever the members that follow change.
@@ -76,8 +102,14 @@ class Archive {
                   std::to_string(version) + "; it belongs to another version of the component");
   }
 
-  /// The saved bytes.
-  const std::vector<std::byte>& bytes() const { return bytes_; }
+  /// The saved bytes, unless they are passed on.
+  const std::vector<std::byte>& bytes() const& { return bytes_; }
+  std::vector<std::byte> bytes() && { return std::move(bytes_); }
+  /// Passes on the last bytes.
+  void flush() {
+    if (take_ && !bytes_.empty()) take_(bytes_);
+    bytes_.clear();
+  }
   /// Whether all bytes have been restored.
   bool at_end() const { return next_ == bytes_.size(); }
 
@@ -100,7 +132,7 @@ class Archive {
   }
   template <class T, class Allocator>
   void one(std::vector<T, Allocator>& list) {
-    const std::size_t count = length<T>(list.size());
+    const std::size_t count = length_of<T>(list.size());
     if constexpr (plain_numbers<T>) {
       list.resize(count);
       raw(list.data(), count);
@@ -110,7 +142,7 @@ class Archive {
   }
   template <class T>
   void one(std::deque<T>& list) {
-    entries_of(list, length<T>(list.size()));
+    entries_of(list, length_of<T>(list.size()));
   }
   /// One after the other: an altered length allocates no more than the archive has entries for.
   template <class List>
@@ -126,7 +158,7 @@ class Archive {
     }
   }
   void one(std::string& text) {
-    text.resize(length<char>(text.size()));
+    text.resize(length_of<char>(text.size()));
     raw(text.data(), text.size());
   }
   template <class T>
@@ -149,7 +181,7 @@ class Archive {
   }
   template <class From, class To>
   void entries(From& from, To& to) {
-    const std::size_t count = length<typename From::key_type>(from.size());
+    const std::size_t count = length_of<typename From::key_type>(from.size());
     if (!restoring_) {
       for (auto& [key, value] : from) {
         auto copy = key;
@@ -165,32 +197,41 @@ class Archive {
     }
   }
 
-  /// Saves or restores the length of a list. Every entry takes at least one byte.
+  /// Every entry takes at least one byte.
   template <class T>
-  std::size_t length(std::size_t now) {
-    std::uint64_t count = now;
-    one(count);
-    if (restoring_) need(plain_numbers<T> ? sizeof(T) : 1, count);
-    return count;
+  std::size_t length_of(std::size_t now) {
+    return length(now, plain_numbers<T> ? sizeof(T) : 1);
   }
   template <class T>
   void raw(T* values, std::size_t count) {
     if (count == 0) return;
     if (!restoring_) {
-      const auto* const from = reinterpret_cast<const std::byte*>(values);
-      bytes_.insert(bytes_.end(), from, from + count * sizeof(T));
+      save(std::as_bytes(std::span(values, count)));
       return;
     }
     need(sizeof(T), count);
     std::memcpy(static_cast<void*>(values), bytes_.data() + next_, count * sizeof(T));
     next_ += count * sizeof(T);
   }
+  void save(std::span<const std::byte> from) {
+    if (!take_) {
+      bytes_.insert(bytes_.end(), from.begin(), from.end());
+      return;
+    }
+    while (!from.empty()) {
+      const std::size_t some = std::min(from.size(), piece - bytes_.size());
+      bytes_.insert(bytes_.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(some));
+      from = from.subspan(some);
+      if (bytes_.size() == piece) flush();
+    }
+  }
   void need(std::size_t size, std::size_t count) const {
     if (count > (bytes_.size() - next_) / size)
       throw Error("the saved state is too short: it belongs to another component or version");
   }
 
-  std::vector<std::byte> bytes_;
+  std::vector<std::byte> bytes_;  // those that were not passed on
+  Take take_;
   std::size_t next_ = 0;
   bool restoring_ = false;
 };

@@ -203,6 +203,12 @@ std::vector<std::byte> bytes_of(const std::optional<LastCheckpoint>& last) {
   return archive.bytes();
 }
 
+/// The part of another rank than the first in saving the state: it keeps nothing.
+void send(const StateToSave& state) {
+  Archive nowhere([](std::span<const std::byte>) {});
+  state.save(nowhere);
+}
+
 /// What other ranks than the first do: the whole run, but they write nothing.
 ExitStatus follow(const Options& options, RunRanks& ranks) {
   RunJob job;
@@ -225,7 +231,7 @@ ExitStatus follow(const Options& options, RunRanks& ranks) {
       job.opened, resumes ? job.opened->prepare_to_resume(state) : job.opened->prepare(state), ranks.threads(options),
       nullptr, ranks.communicator()));
   simulation.interrupt_when([&] { return interrupted.load(); });
-  simulation.on_checkpoint([](const Checkpoint&) {}, 0);
+  simulation.parts().checkpoints.set(&send, 0);
   if (resumes) simulation.resume(checkpoint);
   const RunSummary summary = run_recorded(simulation);
   if (summary.status == "interrupted") return ExitStatus::interrupted;
@@ -290,8 +296,8 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   Simulation simulation(
       std::make_unique<Simulation::Parts>(job.opened, std::move(prepared), threads, &curves, ranks.communicator()));
   simulation.interrupt_when([&] { return interrupted.load(); });
-  simulation.on_checkpoint(
-      [&](const Checkpoint& now) { simulation.done() ? results.final_state(now) : results.checkpoint(now); },
+  simulation.parts().checkpoints.set(
+      [&](const StateToSave& now) { simulation.done() ? results.final_state(now) : results.checkpoint(now); },
       description.output.checkpoint_every);
   if (!quiet || watch)
     simulation.on_progress([&](const Progress& now) {

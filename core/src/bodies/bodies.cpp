@@ -56,9 +56,7 @@ void check_restored(const Clumps& clumps, std::size_t bodies, std::uint32_t ids_
 
 void check_restored(const Bodies& bodies, std::size_t materials, std::span<const std::string> groups) {
   const std::size_t count = bodies.count();
-  expect_restored(bodies.position.size() == count + 1 && bodies.velocity.size() == count + 1 &&
-                      bodies.spin.size() == count + 1 && bodies.material.size() == count + 1 &&
-                      bodies.rotation.size() == (bodies.state.has(BodyState::rotation) ? count : 0) &&
+  expect_restored(bodies.rotation.size() == (bodies.state.has(BodyState::rotation) ? count : 0) &&
                       bodies.origin.size() == (bodies.state.has(BodyState::displacement) ? count : 0),
                   "lists of bodies have different lengths");
   for (std::size_t i = 0; i < count; ++i) {
@@ -68,7 +66,6 @@ void check_restored(const Bodies& bodies, std::size_t materials, std::span<const
     expect_restored(bodies.id[i] < bodies.ids_given, "a body has a number that was not given");
     expect_restored(bodies.material[i] < materials, "a body has a material that the description lacks");
   }
-  expect_restored(bodies.position[count].w == 0 && bodies.material[count] == 0, "the end of the bodies was changed");
   expect_restored(std::ranges::is_sorted(bodies.groups, {}, &BodyGroup::first_id), "groups of bodies do not ascend");
   for (const BodyGroup& group : bodies.groups)
     expect_restored(std::ranges::find(groups, group.name) != groups.end(),
@@ -119,13 +116,17 @@ void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radiu
 void Bodies::finish(StateRequest asked_for) {
   if (count() > most_bodies)
     throw Error(std::to_string(count()) + " bodies; allowed are up to " + std::to_string(most_bodies));
+  pad();
+  if (!clumps.none()) clumps.of_body.resize(count()), clumps.volume_fraction.resize(count(), 1.0);
+  request(asked_for);
+}
+
+void Bodies::pad() {
   constexpr double far_away = 1e18;  // its square is finite in single precision too
   position.push_back({far_away, far_away, far_away, 0});
   velocity.push_back({});
   spin.push_back({});
   material.push_back(0);
-  if (!clumps.none()) clumps.of_body.resize(count()), clumps.volume_fraction.resize(count(), 1.0);
-  request(asked_for);
 }
 
 void Bodies::request(StateRequest asked_for) {
@@ -173,6 +174,20 @@ void Bodies::append(const Bodies& others) {
     }
   }
   ids_given += others.ids_given, clump_ids_given += others.clump_ids_given;
+}
+
+void Bodies::serialize(SharedArchive& archive) {
+  bool turns = !rotation.empty(), has_origins = !origin.empty();
+  const std::size_t bodies = archive.length(count(), 3 * sizeof(Row) + sizeof(id[0]) + sizeof(material[0]));
+  archive(turns, has_origins);
+  if (archive.restoring()) {
+    id.resize(bodies);
+    rotation.assign(turns ? bodies : 0, Vec3::Zero()), origin.assign(has_origins ? bodies : 0, Vec3::Zero());
+    position.resize(bodies), velocity.resize(bodies), spin.resize(bodies), material.resize(bodies);
+  }
+  archive.each_body(bodies, position, velocity, spin, id, material, rotation, origin);
+  archive(clumps, groups, ids_given, clump_ids_given);
+  if (archive.restoring()) pad();
 }
 
 void Bodies::reorder(std::span<const std::uint32_t> order, Team& team) {

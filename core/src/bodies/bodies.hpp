@@ -8,9 +8,9 @@
 
 #include "bodies/clumps.hpp"
 #include "bodies/large_array.hpp"
-#include "grit/archive.hpp"
 #include "grit/vec.hpp"
 #include "grit/world.hpp"
+#include "ranks/shared_archive.hpp"
 #include "threads/team.hpp"
 
 namespace grit {
@@ -57,9 +57,10 @@ struct Bodies {
   /// Moves body order[i] to index i. Bodies that are not in `order` are removed.
   void reorder(std::span<const std::uint32_t> order, Team& team);
   /// Everything except `state`, which follows from the scene.
-  void serialize(Archive& archive) {
-    archive(position, velocity, spin, id, material, rotation, origin, clumps, groups, ids_given, clump_ids_given);
-  }
+  void serialize(SharedArchive& archive);
+
+ private:
+  void pad();
 };
 
 /// Throws Error unless restored bodies fit together. `materials`: their number; `groups`: names of the scene.

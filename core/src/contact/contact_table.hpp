@@ -14,7 +14,7 @@
 #include "contact/search.hpp"
 #include "contact/skins.hpp"
 #include "grit/contact/contact_law.hpp"
-#include "ranks/ranks.hpp"
+#include "ranks/shared_archive.hpp"
 #include "threads/team.hpp"
 
 namespace grit {
@@ -170,13 +170,13 @@ class ContactTable {
   std::size_t bytes() const;
   /// Whether it has the pairs of all ranks.
   bool is_whole() const { return whole_; }
-  /// The whole table, with the pairs of all ranks; all of them must call this.
-  ContactTable joined(Ranks& ranks) const;
-  /// Of a whole table, what a rank has.
-  ContactTable part(const Ranks& ranks) const;
-  /// Lists in their order, which is that of all sums. Restored into a table whose fields are set. Throws Error if they
-  /// do not fit together.
-  void serialize(Archive& archive);
+  /// Chunk by chunk, in the order of all sums. Restored into a table whose fields are set; a rank keeps what it needs.
+  /// Throws Error for pairs that cannot be.
+  void serialize(SharedArchive& archive);
+  /// Where some candidates, in the order of each_near(), are among those of a chunk: alike for any number of ranks.
+  std::vector<std::uint32_t> places(std::size_t chunk, std::span<const std::uint32_t> candidates) const;
+  /// The reverse. Throws Error for places that are not there.
+  std::vector<std::uint32_t> candidates_at(std::size_t chunk, std::span<const std::uint32_t> places) const;
   /// Number of bodies when the table was built.
   std::size_t bodies() const { return bodies_; }
 
@@ -184,12 +184,13 @@ class ContactTable {
   static constexpr std::size_t blocks_at_once = 64;
   struct Blocks {
     std::uint32_t first = 0, near = 0, last = 0;  ///< from `near` on none was in contact when the table was built
-    void serialize(Archive& archive) { archive(first, near, last); }
+    std::uint32_t slots() const { return (last - first) * static_cast<std::uint32_t>(block_size); }
   };
   struct Chunk {
     Blocks within, across;
     std::uint32_t inbox_first = 0, inbox_far = 0, inbox_last = 0;
-    void serialize(Archive& archive) { archive(within, across); }
+    Blocks& of(Kind kind) { return kind == Kind::within ? within : across; }
+    const Blocks& of(Kind kind) const { return kind == Kind::within ? within : across; }
   };
   /// Destination of a row of another chunk.
   struct Letter {
@@ -265,10 +266,17 @@ class ContactTable {
   void finish(Ranks ranks);
   void evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,
                       std::vector<ContactRow>& rows) const;
-  /// Throws Error unless the restored lists fit together.
-  void check_restored() const;
-  /// The same of the pairs in some blocks of a chunk.
-  void check_restored(std::size_t chunk, Blocks blocks, bool within) const;
+  /// Some blocks of a chunk.
+  void save(Archive& archive, Blocks blocks) const;
+  /// Appends blocks of a chunk, and returns them.
+  Blocks restore(Archive& archive, std::size_t chunk, Kind kind);
+  /// Appends the pairs with own bodies of a chunk of another rank; `from` has the pairs of this chunk only.
+  Blocks append_own_pairs(const ContactTable& from, std::size_t chunk, const Ranks& ranks);
+  void append_block(const ContactTable& from, std::size_t chunk, std::span<const std::size_t> slots);
+  /// A table of the same bodies and fields, without chunks.
+  ContactTable empty() const;
+  /// Throws Error unless the restored pairs in some blocks of a chunk can be.
+  void check_restored(std::size_t chunk, Blocks blocks, Kind kind) const;
   void make_inbox(std::size_t bodies);
   void sort_inbox(Chunk& chunk);
   void find_reached();

@@ -218,13 +218,24 @@ Demand CriticalStep::find(const Instant& at, Team& team) {
   return evaluate(own, at, team);
 }
 
-void CriticalStep::check_restored(std::size_t bodies, std::size_t candidates) const {
+void CriticalStep::check_restored(std::size_t bodies) const {
   expect_restored(demand_.size() == bodies && least_.size() == bodies && chunk_.size() == chunks_of(bodies),
                   "the critical time step is of another number of bodies");
-  const auto is_there = [candidates](std::uint32_t c) { return c < candidates; };
-  for (const Chunk& chunk : chunk_)
-    expect_restored(std::ranges::all_of(chunk.near, is_there),
-                    "the critical time step is of contacts that are not there");
+}
+
+void CriticalStep::serialize(SharedArchive& archive, const ContactTable& pairs) {
+  for (auto* list : {&demand_, &least_, &clumps_.springs, &clumps_.dashpots})
+    list->resize(archive.length(list->size(), sizeof(double)));
+  archive(clumps_.dashpot);
+  for (auto* list : {&demand_, &least_, &clumps_.springs, &clumps_.dashpots}) archive.each_body(list->size(), *list);
+  chunk_.resize(archive.length(chunk_.size(), 1));
+  archive.each_chunk(chunk_.size(), [&](Archive& to, std::size_t chunk) {
+    Chunk& own = chunk_[chunk];
+    std::vector<std::uint32_t> places;
+    if (!archive.restoring()) places = pairs.places(chunk, own.near);
+    to(own, places);
+    if (archive.restoring() && archive.ranks().owns(chunk)) own.near = pairs.candidates_at(chunk, places);
+  });
 }
 
 bool CriticalStep::moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const {
@@ -317,32 +328,6 @@ Demand CriticalStep::evaluate(const std::vector<std::size_t>& chunks, const Inst
     chunk_[chunk].patience = std::min(ratio * ratio, most_patience);
   }
   return all;
-}
-
-void CriticalStep::complete(const Clumps& clumps, std::size_t bodies, Ranks& ranks) {
-  for (auto* array : {&demand_, &least_}) ranks.complete_bodies(*array, bodies);
-  if (!clumps.none())
-    for (auto* array : {&clumps_.springs, &clumps_.dashpots}) ranks.complete_bodies(*array, bodies);
-  Archive own;
-  for (std::size_t chunk = ranks.first(); chunk < ranks.last(); ++chunk) own(chunk_[chunk]);
-  Archive all(ranks.all(own.bytes()));
-  for (Chunk& chunk : chunk_) all(chunk);
-}
-
-void CriticalStep::renumber(const ContactTable& before, const ContactTable& now, const Ranks& ranks) {
-  const auto key = [](const ContactTable& table, std::uint32_t c) {
-    return std::uint64_t{table.a(c)} << 32 | table.b(c);
-  };
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> known;
-  now.each_candidate([&](std::size_t c) {
-    known.emplace_back(key(now, static_cast<std::uint32_t>(c)), static_cast<std::uint32_t>(c));
-  });
-  std::ranges::sort(known);
-  for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
-    if (!ranks.owns(chunk)) chunk_[chunk].near.clear();
-    for (std::uint32_t& c : chunk_[chunk].near)
-      c = std::ranges::lower_bound(known, std::pair(key(before, c), 0u))->second;
-  }
 }
 
 /// Demands of bodies with one contact, with a body like themselves.

@@ -67,16 +67,10 @@ class CriticalStep {
   Demand renew(const Instant& at, const Change& change, Team& team);
   /// Whether there are such own chunks.
   bool due(const WallContacts& walls, const Skins& skins, const Change& change, const Ranks& ranks) const;
-  /// Candidates of own chunks get the numbers that they have in another table; those of others are forgotten.
-  void renumber(const ContactTable& before, const ContactTable& now, const Ranks& ranks);
-  /// Completes the values of all ranks, whose candidates have numbers of one table.
-  void complete(const Clumps& clumps, std::size_t bodies, Ranks& ranks);
-
-  /// Throws Error unless restored values fit so many bodies, and candidates of ContactTable.
-  void check_restored(std::size_t bodies, std::size_t candidates) const;
-  void serialize(Archive& archive) {
-    archive(demand_, least_, clumps_.springs, clumps_.dashpots, clumps_.dashpot, chunk_);
-  }
+  /// Restored after the pairs.
+  void serialize(SharedArchive& archive, const ContactTable& pairs);
+  /// Throws Error unless restored values fit so many bodies.
+  void check_restored(std::size_t bodies) const;
 
  private:
   struct Chunk {
@@ -92,9 +86,9 @@ class CriticalStep {
     double patience = 1;       ///< displacement after which it is due, over that of the chunk with the shortest step
     std::vector<std::uint32_t> near;  ///< candidates that count as contacts
     Demand all() const { return larger(demand, together); }
+    /// Without `near`.
     void serialize(Archive& archive) {
-      archive(alone, demand, together, at_walls, walked, walls_walked, overlap, least_overlap, stiffness, patience,
-              near);
+      archive(alone, demand, together, at_walls, walked, walls_walked, overlap, least_overlap, stiffness, patience);
     }
   };
   static constexpr double most_patience = 4;

@@ -6,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "grit/archive.hpp"
-#include "ranks/ranks.hpp"
+#include "ranks/shared_archive.hpp"
 #include "threads/chunks.hpp"
 
 namespace grit {
@@ -65,9 +64,11 @@ class Skins {
   /// walls_walked() at the last search at walls.
   double walls_walked_at_search() const { return wall_.walked_at_search; }
 
-  /// Completes those of other ranks' chunks.
-  void complete(Ranks& ranks) { ranks.complete(chunk_); }
-  void serialize(Archive& archive) { archive(chunk_, wall_, largest_, reach_); }
+  void serialize(SharedArchive& archive) {
+    chunk_.resize(archive.length(chunk_.size(), sizeof(Way)));
+    archive(wall_, largest_, reach_);
+    archive.each_chunk(chunk_.size(), [this](Archive& own, std::size_t chunk) { own(chunk_[chunk]); });
+  }
 
  private:
   struct Way {

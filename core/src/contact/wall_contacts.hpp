@@ -151,8 +151,10 @@ class WallContacts {
   }
   /// Number of contacts that overlap or have a force.
   std::size_t touching_count() const;
-  void serialize(Archive& archive) {
-    archive(chunks_);
+  void serialize(SharedArchive& archive) {
+    // Each chunk has at least the lengths of its lists.
+    chunks_.resize(archive.length(chunks_.size(), 5 * sizeof(std::uint64_t)));
+    archive.each_chunk(chunks_.size(), [this](Archive& own, std::size_t chunk) { own(chunks_[chunk]); });
     if (archive.restoring()) whole_ = true;
   }
   /// Throws Error unless restored contacts fit so many bodies, walls and materials.

@@ -308,10 +308,7 @@ Model Kernel::model() const {
 void Kernel::save(Archive& archive) {
   archive.part("walls", 1);
   archive(state_.walls);
-  if (!passes_.ranks().several()) return serialize(archive);
-  ContactTable own = stepper_.join();
   serialize(archive);
-  stepper_.split(std::move(own));
 }
 
 void Kernel::restore(const SceneDescription& scene, const Components& components, Archive& archive) {
@@ -330,7 +327,7 @@ void Kernel::restore(const SceneDescription& scene, const Components& components
 }
 
 /// Names of the numbers that contacts keep, which the law declares.
-void Kernel::serialize_fields(Archive& archive) {
+void Kernel::serialize_fields(SharedArchive& archive) {
   std::vector<std::string> names, found;
   for (const StateField& field : state_.settings.fields) names.push_back(field.name);
   found = names;
@@ -343,24 +340,34 @@ void Kernel::serialize_fields(Archive& archive) {
 /// Without walls, which come first, and without values that each step recomputes: sums, loads, surfaces. Each part has
 /// a version, which is raised with any change of its members.
 void Kernel::serialize(Archive& archive) {
+  SharedArchive shared(archive, passes_.ranks());
   const auto part = [&archive](const char* name, std::uint32_t version, auto&... members) {
     archive.part(name, version);
     archive(members...);
   };
   part("time", 1, state_.stage, state_.time);
   part("cell", 1, state_.cell);
-  part("bodies", 1, state_.bodies, state_.statistics);
-  part("neighbour lists", 1, state_.lists);
+  archive.part("run time", 3);  // early, as it divides the chunks among ranks
+  passes_.serialize(shared);
+  archive.part("bodies", 2);
+  state_.bodies.serialize(shared);
+  if (archive.restoring())
+    expect_restored(passes_.chunks().size() == chunks_of(state_.bodies.count()),
+                    "computing times are of another number of bodies");
+  archive(state_.statistics);
+  archive.part("neighbour lists", 2);
+  state_.lists.serialize(shared);
   archive.part("contact history", 1);
-  serialize_fields(archive);
-  part("contacts", 1, state_.pairs);
-  part("wall contacts", 2, state_.wall_contacts);
+  serialize_fields(shared);
+  archive.part("contacts", 2);
+  state_.pairs.serialize(shared);
+  archive.part("wall contacts", 3);
+  state_.wall_contacts.serialize(shared);
   part("departures", 1, state_.departures, state_.discharged_mass);
   part("energy", 1, state_.overlap, balance_, guard_);
-  part("time step", 1, stepper_);
+  archive.part("time step", 2);
+  stepper_.serialize(shared);
   part("streams", 1, inflow_);
-  archive.part("run time", 2);
-  passes_.serialize(archive, state_.bodies.count());
   for (const auto& [name, engine] : state_.settings.engines)
     serialize_component("engine \"" + name + '"', *engine, archive);
 }

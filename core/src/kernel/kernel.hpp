@@ -63,8 +63,10 @@ class Kernel {
   std::pair<bool, bool> any_rank(bool one, bool other);
   /// See Ranks::Alone.
   Ranks::Alone alone() const { return Ranks::Alone(passes_.ranks()); }
-  /// Completes what the world shows on this rank; all must call this.
+  /// Completes bodies and clumps that the world shows on this rank; all must call this.
   void complete_world() const { view_.complete(); }
+  /// The same of contacts, on the first rank only.
+  void collect_contacts() const { view_.collect_contacts(); }
   /// Number of pairs in contact, of all ranks.
   std::size_t contact_count() const;
   double body_steps() const { return stepper_.body_steps(); }
@@ -79,7 +81,7 @@ class Kernel {
   /// The state at the present instant as a sample for another simulation. This one cannot be continued.
   Prepared hand_over();
 
-  /// Saves the complete state, between two steps.
+  /// Saves the complete state, between two steps. All ranks must call this; the archive of the first one gets it.
   void save(Archive& archive);
   /// Continues with identical results from the saved state of a kernel of the same scene; `scene`: its settings then.
   void restore(const SceneDescription& scene, const Components& components, Archive& archive);
@@ -100,7 +102,7 @@ class Kernel {
   /// Adds bodies from this one on to the statistics, and allocates their state.
   void count_in(std::size_t first, std::size_t first_clump);
   void serialize(Archive& archive);
-  void serialize_fields(Archive& archive);
+  void serialize_fields(SharedArchive& archive);
 
   State state_;
   mutable Passes passes_;  // const functions use threads, too

@@ -105,13 +105,12 @@ void NeighbourLists::rebuild(Bodies& bodies, const DeformingCell& cell, const Po
   lay_skins(bodies, cell, statistics, dt, wall_speed, passes);
   surroundings_.find(bodies, cell.cell(), skins_, passes.ranks(), passes.team());
   search_.build(bodies, surroundings_.chunks(), cell.cell(), skins_, passes.team());
-  reference_.resize(bodies.position.size()), reference_cell_ = cell.cell();
+  reference_.resize(bodies.count()), reference_cell_ = cell.cell();
   passes.each_own([&](std::size_t chunk) {
     const ChunkRange range(chunk, bodies.count());
     std::copy(bodies.position.begin() + std::ptrdiff_t(range.first),
               bodies.position.begin() + std::ptrdiff_t(range.last), reference_.begin() + std::ptrdiff_t(range.first));
   });
-  if (!reference_.empty()) reference_.back() = bodies.position.back();
   ++rebuilds_;
   requested_ = false;
 }
@@ -155,12 +154,15 @@ double NeighbourLists::shortest_period(const Bodies& bodies, const PopulationSta
 }
 
 void NeighbourLists::check_restored(std::size_t bodies) const {
-  expect_restored(skins_.chunks() == chunks_of(bodies) && reference_.size() == bodies + 1,
+  expect_restored(skins_.chunks() == chunks_of(bodies) && reference_.size() == bodies,
                   "neighbour lists are of another number of bodies");
 }
 
-void NeighbourLists::serialize(Archive& archive) {
-  archive(skins_, reference_, reference_cell_, reaches_, strain_travel_, rebuilds_, searches_at_walls_, requested_);
+void NeighbourLists::serialize(SharedArchive& archive) {
+  skins_.serialize(archive);
+  archive(reference_cell_, reaches_, strain_travel_, rebuilds_, searches_at_walls_, requested_);
+  reference_.resize(archive.length(reference_.size(), sizeof(Row)));
+  archive.each_body(reference_.size(), reference_);
 }
 
 }  // namespace grit

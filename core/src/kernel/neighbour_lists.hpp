@@ -61,9 +61,7 @@ class NeighbourLists {
   static double shortest_period(const Bodies& bodies, const PopulationStatistics& statistics,
                                 std::span<const double> reaches);
 
-  /// Completes what is saved with values of other ranks.
-  void complete(std::size_t bodies, Ranks& ranks) { skins_.complete(ranks), ranks.complete_bodies(reference_, bodies); }
-  void serialize(Archive& archive);
+  void serialize(SharedArchive& archive);
   /// Throws Error unless restored lists fit so many bodies.
   void check_restored(std::size_t bodies) const;
 

@@ -58,16 +58,18 @@ void Passes::find_extremes(double furthest, bool energies) {
   extremes_ = {all[0], all[1], all[2], all[3] == 0};
 }
 
-void Passes::serialize(Archive& archive, std::size_t bodies) {
+void Passes::serialize(SharedArchive& archive) {
+  chunks_.resize(archive.length(chunks_.size(), sizeof(ChunkResult::seconds)));
+  ranks_.resize(chunks_.size());
   archive(passes_.seconds, passes_.parallel);
   for (PhaseTime& phase : phases_) archive(phase.seconds, phase.parallel);
-  resize(bodies);
-  for (ChunkResult& chunk : chunks_) archive(chunk.seconds);
+  archive.each_chunk(chunks_.size(), [this](Archive& own, std::size_t chunk) { own(chunks_[chunk].seconds); });
   if (!archive.restoring()) return;
   recent_.clear();
   for (const ChunkResult& chunk : chunks_)
     recent_.push_back(std::accumulate(chunk.seconds.begin(), chunk.seconds.end(), 0.0));
   counted_ = recent_;
+  divide();
 }
 
 }  // namespace grit

@@ -9,7 +9,7 @@
 #include "grit/contact/batch.hpp"
 #include "kernel/model.hpp"
 #include "motion/motion.hpp"
-#include "ranks/ranks.hpp"
+#include "ranks/shared_archive.hpp"
 #include "threads/chunks.hpp"
 #include "threads/stopwatch.hpp"
 #include "threads/team.hpp"
@@ -115,7 +115,8 @@ class Passes {
   /// Times of all phases; that of each() is divided in proportion to the timed chunks.
   std::vector<PhaseTime> phases() const;
 
-  void serialize(Archive& archive, std::size_t bodies);
+  /// Restoring, divides the chunks among the ranks.
+  void serialize(SharedArchive& archive);
 
  private:
   // Reading the clock takes about 30 ns, a chunk about 20 µs.

@@ -471,36 +471,15 @@ void Stepper::end_step() {
 void Stepper::restored() {
   time_step_.check_restored(state_);
   bounds_.check_restored(state_.walls.size());
-  share();
+  state_.wall_contacts.share(passes_.ranks());
+  state_.halo.build(state_.pairs, passes_.ranks());
   repeat_walls(state_);
   readiness_.build(state_.pairs.reached());
 }
 
-void Stepper::share() {
-  if (!passes_.ranks().several()) return;
-  passes_.divide();
-  split(state_.pairs.part(passes_.ranks()));
-  state_.wall_contacts.share(passes_.ranks());
-  state_.halo.build(state_.pairs, passes_.ranks());
+void Stepper::serialize(SharedArchive& archive) {
+  time_step_.serialize(archive, state_.pairs);
+  archive(bounds_, cell_servo_, forces_step_, body_steps_);
 }
-
-void Stepper::split(ContactTable own) {
-  time_step_.renumber(state_.pairs, own, passes_.ranks());
-  state_.pairs = std::move(own);
-}
-
-ContactTable Stepper::join() {
-  complete_bodies(state_, passes_);
-  state_.lists.complete(state_.bodies.count(), passes_.ranks());
-  passes_.ranks().complete(passes_.chunks());
-  state_.wall_contacts.complete(passes_.ranks());
-  ContactTable whole = state_.pairs.joined(passes_.ranks());
-  time_step_.renumber(state_.pairs, whole, passes_.ranks());
-  time_step_.complete(state_.bodies, passes_.ranks());
-  std::swap(whole, state_.pairs);
-  return whole;
-}
-
-void Stepper::serialize(Archive& archive) { archive(time_step_, bounds_, cell_servo_, forces_step_, body_steps_); }
 
 }  // namespace grit

@@ -44,12 +44,9 @@ class Stepper {
   void collect_sharing();
   Sharing sharing() const { return sharing_.sharing(passes_.imbalance()); }
 
-  void serialize(Archive& archive);
+  void serialize(SharedArchive& archive);
   /// After the state has been restored. Throws Error unless this fits it.
   void restored();
-  /// Makes the state whole, for saving, until split() takes back the own pairs, which this returns.
-  ContactTable join();
-  void split(ContactTable own);
 
  private:
   /// Operations before contacts. Returns whether this instant has been evaluated before.
@@ -75,8 +72,6 @@ class Stepper {
   void move(std::size_t chunk, const BodySum* sum, const MotionStep& step);
   /// Updates bodies of other ranks near own ones.
   void bodies_moved();
-  /// Of a whole state, keeps what this rank needs.
-  void share();
   void sum_forces(bool again);
   void check_finite(const ActingEngine& one, std::span<const Row> force, std::span<const Row> moment) const;
   void add_forces_of_engines();

@@ -36,17 +36,12 @@ class TimeStepControl {
   /// free walls have stiffer contacts.
   void react(bool may_have_stiffened, State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
 
-  /// Between a state that ranks share and a whole one, with the pairs of all; see CriticalStep.
-  void renumber(const ContactTable& before, const ContactTable& now, const Ranks& ranks) {
-    critical_.renumber(before, now, ranks);
-  }
-  void complete(const Bodies& bodies, Ranks& ranks) { critical_.complete(bodies.clumps, bodies.count(), ranks); }
   /// Throws Error unless what was restored fits the state.
-  void check_restored(const State& state) const {
-    critical_.check_restored(state.bodies.count(), state.pairs.candidates());
-  }
-  void serialize(Archive& archive) {
-    archive(critical_, contacts_, walls_, engines_, critical_time_step_, requested_, stiffening_);
+  void check_restored(const State& state) const { critical_.check_restored(state.bodies.count()); }
+  /// Restored after the pairs.
+  void serialize(SharedArchive& archive, const ContactTable& pairs) {
+    critical_.serialize(archive, pairs);
+    archive(contacts_, walls_, engines_, critical_time_step_, requested_, stiffening_);
   }
 
  private:

@@ -18,11 +18,19 @@ bool acts(const ContactRow& row) { return row.moment.w >= 0 || row.force.w != 0;
 
 void WorldView::invalidate() {
   net_step_ = contact_step_ = wall_contact_step_ = wall_step_ = clump_step_ = displacement_step_ = held_step_ = never;
+  collected_step_ = never;
 }
 
 void WorldView::complete() const {
   if (!passes_.ranks().several()) return;
-  static_cast<void>(forces()), static_cast<void>(clumps()), static_cast<void>(contacts());
+  static_cast<void>(bodies()), static_cast<void>(clumps());
+}
+
+void WorldView::collect_contacts() const {
+  Ranks& ranks = passes_.ranks();
+  if (!ranks.several() || contact_step_ == step()) return;
+  find_contacts([&](const std::vector<Contact>& own) { return ranks.collected(own); });
+  collected_step_ = step();
 }
 
 void WorldView::find_net_forces(std::size_t chunk) const {
@@ -128,7 +136,15 @@ std::span<const ClumpView> WorldView::clumps() const {
 }
 
 std::span<const Contact> WorldView::contacts() const {
-  if (contact_step_ == step()) return contacts_;
+  Ranks& ranks = passes_.ranks();
+  if (contact_step_ == step() || (collected_step_ == step() && ranks.is_alone())) return contacts_;
+  find_contacts([&](const std::vector<Contact>& own) { return ranks.all(own); });
+  contact_step_ = step();
+  return contacts_;
+}
+
+template <class Join>
+void WorldView::find_contacts(Join join) const {
   contacts_.clear();
   contacts_.reserve(state_.pairs.touching_count() + state_.wall_contacts.touching_count());
   for (const ContactTable::Kind kind : {ContactTable::Kind::within, ContactTable::Kind::across}) {
@@ -149,13 +165,11 @@ std::span<const Contact> WorldView::contacts() const {
                      .overlap = row.moment.w});
     });
     if (!passes_.ranks().several()) continue;
-    const auto found = passes_.ranks().all(of_rank);
+    const std::vector<Contact> found = join(of_rank);
     contacts_.insert(contacts_.end(), found.begin(), found.end());
   }
   const auto include_walls = contacts_with_walls();
   contacts_.insert(contacts_.end(), include_walls.begin(), include_walls.end());
-  contact_step_ = step();
-  return contacts_;
 }
 
 std::span<const Contact> WorldView::contacts_with_walls() const {
@@ -182,19 +196,21 @@ std::span<const Contact> WorldView::contacts_with_walls() const {
 }
 
 double WorldView::mean_contact_force() const {
-  double sum = 0;
-  std::size_t count = 0;
-  if (passes_.ranks().several()) {
-    for (const Contact& contact : contacts()) sum += std::abs(contact.normal_force), ++count;
-    return count > 0 ? sum / static_cast<double>(count) : 0;
-  }
-  for (const ContactTable::Kind kind : {ContactTable::Kind::within, ContactTable::Kind::across})
-    state_.pairs.each_touching(kind, state_.instant(true), [&](std::size_t, const ContactRow& row) {
-      sum += std::abs(row.force.w), count += acts(row);
-    });
-  state_.wall_contacts.each(
-      [&](const WallContacts::Touching& t) { sum += std::abs(t.row->force.w), count += t.acts(); });
-  return count > 0 ? sum / static_cast<double>(count) : 0;
+  struct Forces {
+    double sum = 0, count = 0;
+    void add(double normal, bool counts) { sum += std::abs(normal), count += counts ? 1 : 0; }
+  };
+  Forces all;
+  for (const Forces& of_chunk : passes_.of_chunks([this](std::size_t chunk) {
+         Forces own;
+         if (chunk >= chunks_of(state_.pairs.bodies())) return own;  // of bodies that have just been appended
+         state_.pairs.each_contact(chunk, state_.instant(true),
+                                   [&](std::size_t, const ContactRow& row) { own.add(row.force.w, acts(row)); });
+         state_.wall_contacts.each(chunk, [&](const WallContacts::Touching& t) { own.add(t.row->force.w, t.acts()); });
+         return own;
+       }))
+    all.sum += of_chunk.sum, all.count += of_chunk.count;
+  return all.count > 0 ? all.sum / all.count : 0;
 }
 
 std::span<const WallView> WorldView::walls() const {

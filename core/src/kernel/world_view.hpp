@@ -25,8 +25,10 @@ class WorldView final : public World {
   /// The same for forces and quantities that depend on them, and for settings.
   void invalidate_forces() { net_step_ = clump_step_ = held_step_ = never; }
 
-  /// Completes all quantities that depend on other ranks, which then need not take part until the next step.
+  /// Completes bodies and clumps with values of other ranks, which then need not take part until the next step.
   void complete() const;
+  /// The same of contacts, on the first rank only.
+  void collect_contacts() const;
   /// As Simulation::keep(), of arrays that are computed on demand.
   std::shared_ptr<const void> keep(WorldArray array);
 
@@ -74,6 +76,9 @@ class WorldView final : public World {
     return state_.bodies;
   }
   void find_net_forces(std::size_t chunk) const;
+  /// `join(list)`: the lists of ranks one after the other.
+  template <class Join>
+  void find_contacts(Join join) const;
 
   State& state_;
   Passes& passes_;
@@ -90,6 +95,7 @@ class WorldView final : public World {
   // Step at which each was computed.
   mutable std::uint64_t net_step_ = never, contact_step_ = never, wall_contact_step_ = never, wall_step_ = never,
                         clump_step_ = never, displacement_step_ = never, held_step_ = never;
+  mutable std::uint64_t collected_step_ = never;  // that of contacts on the first rank only
 };
 
 }  // namespace grit

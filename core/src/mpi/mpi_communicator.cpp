@@ -48,6 +48,10 @@ class MpiCommunicator final : public Communicator {
     MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE, MPI_MAX, all_);
   }
 
+  void transpose(std::span<std::uint64_t> by_rank) override {
+    MPI_Alltoall(MPI_IN_PLACE, 0, MPI_UINT64_T, by_rank.data(), 1, MPI_UINT64_T, all_);
+  }
+
   void exchange(std::span<const Message> sent, std::span<const Message> received) override {
     requests_.clear();
     for (const Message& one : received)

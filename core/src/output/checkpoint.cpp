@@ -10,7 +10,6 @@
 #include "description/description.hpp"
 #include "grit/error.hpp"
 #include "input/document.hpp"
-#include "storage/state_file.hpp"
 
 namespace grit {
 namespace {
@@ -209,9 +208,9 @@ bool has_checkpoint(const std::filesystem::path& folder) {
          std::filesystem::exists(previous_checkpoint_path(folder), none);
 }
 
-void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint,
+void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const StateToSave& state,
                       const std::filesystem::path& previous) {
-  write_state(path, {checkpoint_facts(facts), checkpoint}, previous);
+  write_state(path, checkpoint_facts(facts), state, previous);
 }
 
 void check_facts(const std::string& checkpoint, const Description& then, const Description& now, ResumedBy by) {

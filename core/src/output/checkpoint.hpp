@@ -8,6 +8,7 @@
 #include "grit/checkpoint.hpp"
 #include "grit/error.hpp"
 #include "output/run_facts.hpp"
+#include "storage/state_file.hpp"
 
 namespace grit {
 
@@ -32,7 +33,7 @@ class DamagedCheckpoint : public FileError {
 
 /// Writes a checkpoint with the facts of its run: grit, plugins and description. `previous`: as for write_state().
 /// Throws FileError.
-void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint,
+void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const StateToSave& state,
                       const std::filesystem::path& previous = {});
 
 /// Who reads a checkpoint, and so what is advised if it does not fit.

@@ -244,15 +244,14 @@ void ResultsFolder::sync(std::initializer_list<const char*> files) const {
   for (const auto& folder : made_) sync_folder(folder.parent_path());
 }
 
-void ResultsFolder::checkpoint(const Checkpoint& checkpoint) {
+void ResultsFolder::checkpoint(const StateToSave& state) {
   journal_->sync();
   frames_->sync();
   sync({"run.json", "description.json"});
-  write_checkpoint(checkpoint_path(options_.folder), options_.facts, checkpoint,
-                   previous_checkpoint_path(options_.folder));
+  write_checkpoint(checkpoint_path(options_.folder), options_.facts, state, previous_checkpoint_path(options_.folder));
 }
 
-void ResultsFolder::final_state(const Checkpoint& state) {
+void ResultsFolder::final_state(const StateToSave& state) {
   expect_no_other("final.h5");
   write_checkpoint(options_.folder / "final.h5", options_.facts, state);
   note("final.h5");

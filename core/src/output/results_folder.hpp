@@ -19,6 +19,7 @@
 #include "output/single_channels.hpp"
 #include "run/recorder.hpp"
 #include "storage/atomic_file.hpp"
+#include "storage/state_file.hpp"
 
 namespace grit {
 
@@ -85,9 +86,9 @@ class ResultsFolder final : public Recorder {
   void finish(const World& world, const RunSummary& summary) override;
 
   /// Writes checkpoint.h5, once the samples and frames up to it are on disk.
-  void checkpoint(const Checkpoint& checkpoint);
+  void checkpoint(const StateToSave& state);
   /// Writes final.h5, before finish().
-  void final_state(const Checkpoint& state);
+  void final_state(const StateToSave& state);
 
  private:
   /// A channel of the picture, kept in memory.

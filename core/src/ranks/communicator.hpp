@@ -27,6 +27,8 @@ class Communicator {
   virtual void sum(std::span<std::uint64_t> numbers) = 0;
   /// Takes the largest of all ranks, entry by entry.
   virtual void largest(std::span<double> numbers) = 0;
+  /// Sends entry r to rank r, and takes in its place what that rank sends to this one.
+  virtual void transpose(std::span<std::uint64_t> by_rank) = 0;
   /// Sends some messages and receives others, of known lengths: at most one to and one from each rank.
   virtual void exchange(std::span<const Message> sent, std::span<const Message> received) = 0;
   /// The last call of each rank: waits for the others. False if they have not called it within so many seconds.

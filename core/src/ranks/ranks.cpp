@@ -29,4 +29,27 @@ std::vector<std::size_t> Ranks::starts_of(std::size_t own) {
   return starts;
 }
 
+void Ranks::send_piece(unsigned to, std::span<const std::byte> piece) {
+  const std::size_t length = piece.size();
+  std::vector<Communicator::Message> sent;
+  const std::span lengths(&length, 1);
+  add(sent, to, lengths);
+  exchange(sent, {});
+  sent.clear();
+  add(sent, to, piece);
+  exchange(sent, {});
+}
+
+std::vector<std::byte> Ranks::receive_piece(unsigned from) {
+  std::array<std::size_t, 1> length{};
+  std::vector<Communicator::Message> received;
+  add(received, from, length);
+  exchange({}, received);
+  std::vector<std::byte> piece(length.front());
+  received.clear();
+  add(received, from, piece);
+  exchange({}, received);
+  return piece;
+}
+
 }  // namespace grit

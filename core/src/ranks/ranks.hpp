@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -60,6 +61,28 @@ class Ranks {
     gather(bytes_of(found), starts);
     return found;
   }
+  /// The same on the first rank; nothing on others. They are sent in pieces.
+  template <class T>
+  std::vector<T> collected(const std::vector<T>& own) {
+    static_assert(std::is_trivially_destructible_v<T>, "values without memory of their own");
+    if (!several()) return own;
+    std::vector<T> found;
+    constexpr std::size_t at_once = (std::size_t{1} << 20) / sizeof(T);
+    if (rank() == 0) {
+      found = own;
+      for (unsigned from = 1; from < count(); ++from)
+        receive_pieces(from, [&](std::span<const std::byte> piece) {
+          const std::size_t before = found.size();
+          found.resize(before + piece.size() / sizeof(T));
+          std::memcpy(static_cast<void*>(found.data() + before), piece.data(), piece.size());
+        });
+    } else {
+      for (std::size_t first = 0; first < own.size(); first += at_once)
+        send_piece(0, std::as_bytes(std::span(own).subspan(first, std::min(at_once, own.size() - first))));
+      send_piece(0, {});
+    }
+    return found;
+  }
   /// The value of each rank.
   template <class T>
   std::vector<T> each(const T& own) {
@@ -75,6 +98,10 @@ class Ranks {
   void largest(std::span<double> numbers) {
     reduce(numbers, [&] { all_->largest(numbers); });
   }
+  /// Sends entry r to rank r, and takes in its place what that rank sends to this one.
+  void transpose(std::span<std::uint64_t> by_rank) {
+    reduce(by_rank, [&] { all_->transpose(by_rank); });
+  }
   bool any(bool own) { return any(std::array{own}).front(); }
   /// For each entry, whether any rank says so.
   template <std::size_t count>
@@ -88,13 +115,13 @@ class Ranks {
   /// Sends a list to each rank, and returns the list from each.
   template <class T>
   std::vector<std::vector<T>> exchange(const std::vector<std::vector<T>>& to) {
-    std::vector<std::size_t> sizes;
+    std::vector<std::uint64_t> sizes;
     for (const auto& list : to) sizes.push_back(list.size());
-    const std::vector<std::size_t> matrix = all(sizes);
+    transpose(sizes);
     std::vector<std::vector<T>> from(count());
     std::vector<Communicator::Message> sent, received;
     for (unsigned r = 0; r < count(); ++r) {
-      from[r].resize(matrix[r * count() + rank()]);
+      from[r].resize(sizes[r]);
       if (r == rank()) from[r] = to[r];
       else add(sent, r, to[r]), add(received, r, from[r]);
     }
@@ -116,7 +143,14 @@ class Ranks {
       ++traffic_.messages, traffic_.bytes += static_cast<double>(one.bytes.size());
     all_->exchange(sent, received);
   }
+  /// Sends a list to another rank, in pieces that it takes one after the other. An empty one is the last.
+  void send_piece(unsigned to, std::span<const std::byte> piece);
+  template <class Take>
+  void receive_pieces(unsigned from, Take take) {
+    for (std::vector<std::byte> piece; !(piece = receive_piece(from)).empty();) take(std::span<const std::byte>(piece));
+  }
   const Traffic& traffic() const { return traffic_; }
+  bool is_alone() const { return alone_ > 0; }
 
   /// While it lives, one rank does what others do not, such as writing: what needs others is a defect, and throws.
   class Alone {
@@ -155,6 +189,7 @@ class Ranks {
     ++traffic_.gathers, traffic_.gathered += static_cast<double>(numbers.size_bytes());
     work();
   }
+  std::vector<std::byte> receive_piece(unsigned from);
   void refuse_alone() const;
 
   Communicator* all_;

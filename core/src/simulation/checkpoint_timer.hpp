@@ -5,7 +5,7 @@
 #include <functional>
 #include <utility>
 
-#include "grit/checkpoint.hpp"
+#include "storage/state_file.hpp"
 #include "threads/stopwatch.hpp"
 
 namespace grit {
@@ -13,8 +13,10 @@ namespace grit {
 /// Uses wall-clock time only: the simulation does not depend on it.
 class CheckpointTimer {
  public:
-  /// `keep` gets a checkpoint every `interval` [s] of wall-clock time; 0: only when the simulation is interrupted.
-  void set(std::function<void(const Checkpoint&)> keep, double interval) {
+  using Keep = std::function<void(const StateToSave&)>;
+
+  /// `keep` gets the state every `interval` [s] of wall-clock time; 0: only when the simulation is interrupted.
+  void set(Keep keep, double interval) {
     keep_ = std::move(keep), interval_ = interval;
     restart();
   }
@@ -28,11 +30,9 @@ class CheckpointTimer {
     const double since = seconds_since(saved_);
     return since >= interval_ && largest_fraction * since >= saving_;
   }
-  /// Passes the checkpoint from `save` to `keep`.
-  template <class Save>
-  void save(Save save) {
+  void save(const StateToSave& state) {
     const auto began = std::chrono::steady_clock::now();
-    keep_(save());
+    keep_(state);
     restart();
     saving_ = seconds_since(began);
   }
@@ -41,7 +41,7 @@ class CheckpointTimer {
   // Maximum fraction of the run time for checkpoints, at any interval.
   static constexpr double largest_fraction = 0.01;
 
-  std::function<void(const Checkpoint&)> keep_;
+  Keep keep_;
   double interval_ = 0;  // s
   std::chrono::steady_clock::time_point saved_ = std::chrono::steady_clock::now();
   double saving_ = 0;  // s, the last checkpoint

@@ -67,7 +67,7 @@ StageRunner::Event Simulation::Parts::next(bool stop) try {
     else stop = saves = false;
   }
   // Saved before the step, so that the checkpoint is the state at which the simulation stops.
-  if (saves) checkpoints.save([this] { return runner.save(); });
+  if (saves) checkpoints.save(runner.to_save());
   const StageRunner::Event event = placed([&] { return runner.next(stop); });
   if (event == StageRunner::Event::stage_ended) progress.enter_stage();
   else if (event == StageRunner::Event::stepped) {
@@ -108,7 +108,7 @@ void Simulation::Parts::set_engine(const std::string& name, std::shared_ptr<Engi
 
 Checkpoint Simulation::Parts::save() {
   start();
-  return runner.save();
+  return saved(runner.to_save());
 }
 
 void Simulation::Parts::show_instant() try {

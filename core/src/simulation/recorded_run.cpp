@@ -43,12 +43,10 @@ RunSummary run_recorded(Simulation& simulation) {
   RunSummary summary;
   try {
     summary.status = simulation.run() ? "done" : "interrupted";
-    if (summary.status == "done" && parts.checkpoints.keeps())
-      parts.checkpoints.save([&] { return parts.runner.save(); });
+    if (summary.status == "done" && parts.checkpoints.keeps()) parts.checkpoints.save(parts.runner.to_save());
   } catch (const RefusedRecord&) {
     // Other ranks do not know of it.
-    if (parts.checkpoints.keeps() && parts.kernel.ranks() == 1)
-      parts.checkpoints.save([&] { return parts.runner.save(); });
+    if (parts.checkpoints.keeps() && parts.kernel.ranks() == 1) parts.checkpoints.save(parts.runner.to_save());
     throw;
   } catch (const NumericsError& error) {
     summary.status = "failed", summary.message = error.what(), summary.guard = error.guard();

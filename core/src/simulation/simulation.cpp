@@ -138,7 +138,9 @@ void Simulation::on_progress(std::function<void(const Progress&)> report, double
 }
 
 void Simulation::on_checkpoint(std::function<void(const Checkpoint&)> keep, double interval) {
-  parts_->checkpoints.set(std::move(keep), interval);
+  CheckpointTimer::Keep keep_saved;
+  if (keep) keep_saved = [keep = std::move(keep)](const StateToSave& state) { keep(saved(state)); };
+  parts_->checkpoints.set(std::move(keep_saved), interval);
 }
 
 void Simulation::interrupt_when(std::function<bool()> condition) { parts_->interrupted = std::move(condition); }

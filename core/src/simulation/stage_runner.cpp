@@ -263,15 +263,15 @@ void StageRunner::note(Set set) {
 
 std::optional<double> StageRunner::progress() const { return grit::progress(description().until, kernel_, start_); }
 
-Checkpoint StageRunner::save() {
-  const Stopwatch watch(phases_[1].seconds);
+StateToSave StageRunner::to_save() {
   recorder_.flush();
-  Archive archive;
-  archive.part("stages", 1);
-  archive(stage_, increments_, sets_);
-  kernel_.save(archive);
-  serialize(archive);
-  return {world_.stage(), world_.time(), world_.step(), archive.bytes()};
+  return {world_.stage(), world_.time(), world_.step(), [this](Archive& archive) {
+            const Stopwatch watch(phases_[1].seconds);
+            archive.part("stages", 1);
+            archive(stage_, increments_, sets_);
+            kernel_.save(archive);
+            serialize(archive);
+          }};
 }
 
 void StageRunner::serialize(Archive& archive) {
@@ -362,7 +362,7 @@ void StageRunner::frame() {
       note_fields(observer);
       fields.push_back(observer.fields(world_));
     }
-  kernel_.complete_world();
+  kernel_.complete_world(), kernel_.collect_contacts();
   const auto alone = kernel_.alone();
   recorder_.frame(world_, fields);
 }

@@ -59,7 +59,8 @@ class StageRunner {
   std::optional<double> progress() const;
 
   /// Has the recorder keep what was recorded, and returns where the run is. Between two steps.
-  Checkpoint save();
+  /// The present state; the records so far are flushed.
+  StateToSave to_save();
   /// Samples and frame of the last instant, and the summary.
   void finish(RunSummary& summary);
   /// All figures of the summary but status and message.

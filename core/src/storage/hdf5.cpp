@@ -471,7 +471,8 @@ Dataset Group::write(const std::string& name, const Shape& shape, Number type, s
   return {std::move(id), std::move(where)};
 }
 
-Dataset Group::create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk, Number type) {
+Dataset Group::create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk, Number type,
+                              bool checksums) {
   auto where = child(where_, name);
   std::vector<hsize_t> now{0}, limit{H5S_UNLIMITED}, chunk{rows_per_chunk};
   for (const auto length : row) {
@@ -483,8 +484,13 @@ Dataset Group::create_growing(const std::string& name, const Shape& row, std::si
                             "describe a shape");
   const auto creation = owned(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, where, "prepare the dataset");
   checked(H5Pset_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data()), where, "prepare the dataset");
+  const auto access = owned(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, where, "prepare the dataset");
+  if (checksums) {
+    checked(H5Pset_chunk_cache(access.id(), 0, 0, 0), where, "prepare the dataset");  // as in write()
+    checked(H5Pset_fletcher32(creation.id()), where, "prepare the dataset");
+  }
   auto id =
-      owned(H5Dcreate2(handle_.id(), name.c_str(), native(type), extent.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+      owned(H5Dcreate2(handle_.id(), name.c_str(), native(type), extent.id(), H5P_DEFAULT, creation.id(), access.id()),
             H5Dclose, where, "create the dataset");
   return {std::move(id), std::move(where)};
 }

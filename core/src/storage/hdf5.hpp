@@ -154,10 +154,12 @@ class Group : public Object {
   Dataset write(const std::string& name, std::span<const std::byte> bytes) {
     return write(name, {bytes.size()}, Number::uint8, bytes.size(), bytes.data());
   }
-  /// A dataset whose first dimension grows; `row` is the shape of one row.
+  /// A dataset whose first dimension grows; `row` is the shape of one row. With checksums, append whole chunks, except
+  /// the last.
   template <class T>
-  Dataset create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk) {
-    return create_growing(name, row, rows_per_chunk, number_of<T>());
+  Dataset create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk,
+                         bool checksums = false) {
+    return create_growing(name, row, rows_per_chunk, number_of<T>(), checksums);
   }
 
  protected:
@@ -165,7 +167,8 @@ class Group : public Object {
 
  private:
   Dataset write(const std::string& name, const Shape& shape, Number type, std::size_t size, const void* values);
-  Dataset create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk, Number type);
+  Dataset create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk, Number type,
+                         bool checksums);
 };
 
 enum class Mode {

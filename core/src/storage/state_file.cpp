@@ -2,8 +2,10 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "grit/error.hpp"
 #include "storage/atomic_file.hpp"
@@ -15,26 +17,48 @@ namespace grit {
 namespace {
 
 /// Version of the layout of the file. Parts of the state have their own, see Archive::part().
-constexpr std::uint64_t format = 5;
+constexpr std::uint64_t format = 6;
+
+/// Writes a dataset in pieces, or at once if there is less than one.
+void write_pieces(hdf5::File& file, const std::string& name, const std::function<void(Archive&)>& save) {
+  std::optional<hdf5::Dataset> written;
+  Archive archive([&](std::span<const std::byte> piece) {
+    if (piece.size() < Archive::piece && !written) {
+      written = file.write(name, piece);
+    } else {
+      if (!written) written = file.create_growing<std::uint8_t>(name, {}, Archive::piece, true);
+      written->append(std::span(reinterpret_cast<const std::uint8_t*>(piece.data()), piece.size()));
+    }
+  });
+  save(archive);
+  archive.flush();
+  if (!written) file.write(name, {});
+}
 
 }  // namespace
 
-void write_state(const std::filesystem::path& path, const StateFile& state, const std::filesystem::path& previous,
-                 const std::filesystem::path& temporary) {
+Checkpoint saved(const StateToSave& state) {
+  Archive archive;
+  state.save(archive);
+  return {state.stage, state.time, state.step, std::move(archive).bytes()};
+}
+
+void write_state(const std::filesystem::path& path, const Description& facts, const StateToSave& state,
+                 const std::filesystem::path& previous, const std::filesystem::path& temporary) {
   const auto part = temporary.empty() ? temporary_path(path) : temporary;
   try {
     hdf5::File file(part, hdf5::Mode::write_whole);
     file.set_attribute("format", format);
-    file.set_attribute("stage", state.checkpoint.stage);
-    file.set_attribute("time", state.checkpoint.time);
-    file.set_attribute("step", state.checkpoint.step);
+    file.set_attribute("stage", state.stage);
+    file.set_attribute("time", state.time);
+    file.set_attribute("step", state.step);
     // JSON has neither infinite numbers nor texts that are not UTF-8.
-    const std::string facts = state.facts.dump(-1, ' ', false, Description::error_handler_t::replace);
-    file.write("facts", std::as_bytes(std::span(facts)));
-    file.write("state", state.checkpoint.state);
+    const std::string text = facts.dump(-1, ' ', false, Description::error_handler_t::replace);
+    file.write("facts", std::as_bytes(std::span(text)));
+    write_pieces(file, "state", state.save);
     file.close();
     seal(part);
-  } catch (const FileError&) {
+  } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);  // incomplete, e.g. because the disk is full
     throw;
