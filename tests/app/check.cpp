@@ -30,6 +30,19 @@ TEST(Check, ReportsTheRun) {
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
+TEST(Check, EstimatesRanks) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto outcome = grit_in(folder.path(), {"check", "two.json", "--threads", "1", "--ranks", "8"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  // Two bodies of which each rank keeps 340 bytes, and 360 on one of eight ranks.
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("memory of each of 8 ranks: about 770 bytes when dense\n"),
+                                 HasSubstr("estimated time on 8 ranks of 1 thread ")));
+  const auto none = grit_in(folder.path(), {"check", "two.json", "--ranks", "0"});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_THAT(none.err, HasSubstr("--ranks takes a number from 1 to 1024, not \"0\""));
+}
+
 TEST(Check, CountsTheStepsOfEachStageAndRefusesThoseThatNeverEnd) {
   const OwnFolder folder;
   auto scene = json::parse(two_grains);

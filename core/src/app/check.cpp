@@ -12,6 +12,7 @@
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
+#include "bodies/body_memory.hpp"
 #include "bodies/make_bodies.hpp"
 #include "description/current_scene.hpp"
 #include "format/duration.hpp"
@@ -104,7 +105,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     std::cout << "  " << std::left << std::setw(10) << one.kind << std::setw(20) << one.name << one.version
               << (one.file.empty() ? "  built in" : "") << '\n';
 
-  const unsigned threads = options.threads();
+  const unsigned threads = options.threads(), ranks = options.number("ranks");
   std::string note;  // of the sample
   Kernel kernel(at_first_instant(scene.document, [&] {
     Prepared prepared = prepare(live, registry, run_state(description, components));
@@ -138,8 +139,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   before = "; removal by ";
   for (const auto& [name, engine] : components.engines)
     if (engine->phase() == Phase::removal) std::cout << std::exchange(before, ", ") << name;
-  std::cout << "\n\nbodies: " << bodies << ", contacts of pairs at the start: " << kernel.contact_count()
-            << '\n';
+  std::cout << "\n\nbodies: " << bodies << ", contacts of pairs at the start: " << kernel.contact_count() << '\n';
   const TimeStepDescription& wish = description.time_step;
   const double safe = wish.safety * kernel.critical_time_step();
   const Estimate expected = estimate(scene, components, kernel);
@@ -174,6 +174,9 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
                memory_free = memory_now + available_memory();
   std::cout << "memory: " << bytes_text(memory_now) << " now, about " << bytes_text(memory_dense) << " when dense; "
             << bytes_text(memory_free) << " are available\n";
+  if (ranks > 1)
+    std::cout << "memory of each of " << ranks << " ranks: about " << bytes_text(bytes_of_rank(most_bodies, ranks))
+              << " when dense\n";
   std::size_t triangles = 0;
   for (const auto& [name, geometry] : live.geometries().all()) triangles += geometry->triangles().size() / 3;
   const auto touching = static_cast<double>(kernel.world().contacts().size());
@@ -204,11 +207,13 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
       std::cout << " (ends by its condition" << (stage.usual ? fmt::format(", {:g} s at most", stage.most) : "") << ')';
     std::cout << '\n';
   }
-  const double per_second = planning_speed(std::min(threads, std::max(1u, std::thread::hardware_concurrency())));
+  const double per_second =
+      ranks * planning_speed(std::min(threads, std::max(1u, std::thread::hardware_concurrency())));
   const double least = expected.least_body_steps, most = expected.most_body_steps;
   const auto cost = [&](double body_steps) { return body_steps / per_second; };
-  std::cout << "\nestimated time on " << threads << (threads == 1 ? " thread" : " threads") << " at "
-            << 1e-6 * per_second << " M particle-steps/s: " << hours_text(cost(least))
+  std::cout << "\nestimated time on " << (ranks > 1 ? std::to_string(ranks) + " ranks of " : "") << threads
+            << (threads == 1 ? " thread" : " threads") << " at " << 1e-6 * per_second
+            << " M particle-steps/s: " << hours_text(cost(least))
             << (expected.all_known ? "" : " at least (the end of a stage without typical_time is unknown)");
   if (most > least) std::cout << ", at most " << hours_text(cost(most)) << " if stages run to their limits";
   std::cout << '\n';
@@ -245,6 +250,8 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
 
 void check_options(Options& options) {
   options.add_threads("threads assumed in the estimate of the run time");
+  options.add()("ranks", boost::program_options::value<std::string>()->default_value("1")->value_name("N"),
+                "processes assumed in the estimates, each with so many threads: see mpirun -n N grit run");
   options.add_set();
 }
 
