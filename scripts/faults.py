@@ -41,6 +41,7 @@ from pathlib import Path
 import h5py
 
 import brief
+import mpi
 import same_results
 import tables
 
@@ -59,6 +60,7 @@ FRAMES = 12                                              # in each scene, about
 POLL = 0.002                                             # s
 BUSY = 'import os, sys\nwhile os.getppid() == int(sys.argv[1]): pass'  # until this process ends, however it does
 SPARE = 1 << 25                                          # bytes of address space
+MPI_STARTS, MPI_ENDS = 0.3, 10                          # s, before it computes, and after a rank was killed
 PATIENCE = 120                                           # s that a run may take, besides 50 times that of the undisturbed one
 
 
@@ -252,6 +254,7 @@ class Case:
     folder: Path
     random: random.Random
     late: int = 0                                        # cases of this fault in a row whose run had ended before it
+    ranks: int = 1                                       # processes of a run
     lost: list = field(default_factory=list)
     bits: list = field(default_factory=list)
     status: list = field(default_factory=list)
@@ -269,9 +272,11 @@ class Case:
         threads = self.random.choice((1, 2, 3))
         page = [] if self.page else ['--no-report']
         what = [self.out] if of_folder else [self.scene.file, '--out', self.out]
-        return [self.campaign.grit, 'run', *what, '--threads', str(threads), '--quiet', *page, *more]
+        return mpi.words(self.ranks, [self.campaign.grit, 'run', *what, '--threads', str(threads), '--quiet', *page, *more])
 
     def start(self, *more, environment=None, before=None, of_folder=False):
+        if self.ranks > 1:
+            environment = mpi.ENVIRONMENT | (environment or {})
         return Process(self.words(*more, of_folder=of_folder), self.folder / 'log.txt', environment, before)
 
     def resume(self, **how):
@@ -532,6 +537,37 @@ def two_runs(case):
     case.finish()
 
 
+def rank_killed(case):
+    """One of several processes of mpirun, which ends the others and reports which it was."""
+    case.ranks = case.random.choice((2, 3))
+    run = case.start()
+    if run.ends_within(MPI_STARTS + case.moment()):
+        raise TooLate
+    ranks = mpi.processes_of(run.process.pid)
+    if len(ranks) < case.ranks:
+        run.send(signal.SIGKILL)
+        case.status_of(run)
+        raise NotApplied
+    try:
+        os.kill(case.random.choice(ranks), signal.SIGKILL)
+    except ProcessLookupError:
+        raise TooLate from None
+    until = time.monotonic() + MPI_ENDS
+    status, text = case.status_of(run), run.text()       # those of mpirun
+    if status not in (128 + signal.SIGKILL, DONE):
+        case.status.append(f'exit status {status}, allowed {128 + signal.SIGKILL}: {text.strip()[-300:]}')
+    elif status != DONE and not re.search(r'rank \d+ with PID \d+ on node \S+ exited on signal 9', text):
+        case.status.append(f'the message does not name the rank: {text.strip()[-300:]}')
+    while time.monotonic() < until and any(map(mpi.is_running, ranks)):
+        time.sleep(POLL)
+    if left := list(filter(mpi.is_running, ranks)):
+        case.status.append(f'processes that run {MPI_ENDS} s later: {left}')
+    case.examine()
+    case.ranks = case.random.choice((1, 2))
+    case.finish()
+
+
+RANK_KILLED = 'a rank killed'                            # with MPI only
 FAULTS = {
     'SIGKILL': killed,
     'SIGKILL in a call of the system': killed_in_call,
@@ -557,6 +593,7 @@ FAULTS = {
     'series.h5 removed': series_removed,
     'clocks that jump': clocks_jump,
     'two runs into one folder': two_runs,
+    RANK_KILLED: rank_killed,
 }
 HEAD = ('fault', 'tried', 'lost', 'wrong bits', 'wrong status', 'hours', 'date')
 
@@ -721,6 +758,8 @@ def main():
             parser.error(f'{file} does not exist; build the tree, with its tests, or name the file')
     if given.undisturbed is not None and given.scale != 1:
         parser.error('--scale beside --undisturbed, whose scenes have a length; omit it')
+    if not mpi.is_there(given.grit):
+        del FAULTS[RANK_KILLED]
     campaign_faults = [fault for fault in FAULTS if matches(fault, given.only)]
     if not campaign_faults or not any(matches(name, given.scene) for name in SCENES):
         parser.error('no fault or no scene matches')

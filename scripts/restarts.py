@@ -27,6 +27,7 @@ from pathlib import Path
 import h5py
 
 import brief
+import mpi
 import same_results
 import tables
 
@@ -39,9 +40,6 @@ FEWEST = 50                                              # steps of a stage
 FRAMES_PER_STAGE = 4
 KINDS = {'bodies': 'body', 'contacts': 'contact', 'engines': 'engine', 'geometry': 'geometry', 'probes': 'probe',
          'scenarios': 'scenario'}
-
-# Open MPI refuses to run as root otherwise, as in a container.
-MPI_AS_ROOT = {'OMPI_ALLOW_RUN_AS_ROOT': '1', 'OMPI_ALLOW_RUN_AS_ROOT_CONFIRM': '1'} if os.geteuid() == 0 else {}
 
 HERTZ = {'young_modulus': '50 MPa', 'poisson_ratio': 0.2, 'friction_angle': '25 deg', 'restitution': 0.6, 'density': '2600 kg/m^3'}
 # Plugins that no quick description uses, in scenes of sims/: what is merged into the description, null removes.
@@ -120,10 +118,8 @@ class Scene:
         self.used = set()
 
     def run(self, threads, *more, ranks=1, environment=None):
-        words = [self.given.grit, 'run', *more, '--threads', str(threads), '--quiet', '--no-report']
-        if ranks > 1:
-            words = ['mpirun', '--oversubscribe', '-n', str(ranks), *words]
-        done = subprocess.run(words, capture_output=True, text=True, check=False, env=os.environ | MPI_AS_ROOT | (environment or {}))
+        words = mpi.words(ranks, [self.given.grit, 'run', *more, '--threads', str(threads), '--quiet', '--no-report'])
+        done = subprocess.run(words, capture_output=True, text=True, check=False, env=os.environ | mpi.ENVIRONMENT | (environment or {}))
         return done.returncode, done.stderr.strip()
 
     def write(self, steps):

@@ -26,7 +26,8 @@ class Mpi : public testing::Test {
         .finish();
   }
   std::string run(const std::string& more = "") const {
-    return std::string("exec " GRIT_BINARY " run " GRIT_SOURCE_DIR "/bench/scenes/tiny.json --out out --no-report ") +
+    return std::string("exec " GRIT_BINARY " run " GRIT_SOURCE_DIR "/bench/scenes/tiny.json --no-report ") +
+           (more.find("--out") == std::string::npos ? "--out out " : "") +
            "--set /stages/0/until/value=20 --set /stages/1/until/value=20 " + more;
   }
 
@@ -46,6 +47,21 @@ TEST_F(Mpi, OnlyTheFirstRankReports) {
   EXPECT_EQ(count_of(two.out, "results: out"), 1u);
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out/final.h5"));
 }
+
+#ifdef GRIT_FAULTS_SHIM
+TEST_F(Mpi, ClocksTimeZonesAndLocalesMayDiffer) {
+  const Outcome alone = Program({"/bin/sh", "-c", run("--out alone")}, folder_.path()).finish();
+  ASSERT_EQ(alone.status, 0) << alone.err;
+  const Outcome two = on(2, "[ $OMPI_COMM_WORLD_RANK = 0 ] || export LD_PRELOAD=" GRIT_FAULTS_SHIM
+                            " FAULTS_CLOCK=7:10 TZ=Asia/Tokyo LC_ALL=de_DE.UTF-8; " +
+                                run());
+  ASSERT_EQ(two.status, 0) << two.err;
+  const Outcome compared =
+      Program({"/usr/bin/python3", GRIT_SOURCE_DIR "/scripts/same_results.py", "alone", "out"}, folder_.path())
+          .finish();
+  EXPECT_EQ(compared.status, 0) << compared.out << compared.err;
+}
+#endif
 
 TEST_F(Mpi, ADescriptionThatDiffersIsRefused) {
   const Outcome two = on(2, run("--set /seed=$((5 + OMPI_COMM_WORLD_RANK))"));
