@@ -85,6 +85,11 @@ def _facts(path, file):
     return json.loads(file.read_text(encoding='utf-8'))
 
 
+def read_facts(folder):
+    """run.json of a results folder."""
+    return json.loads((Path(folder) / 'run.json').read_text(encoding='utf-8'))
+
+
 def has_ranks(path):
     """Whether this grit runs in several processes, and mpirun is there."""
     return shutil.which('mpirun') is not None and (Path(path).parents[1] / 'lib/grit/mpi.so').is_file()

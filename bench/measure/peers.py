@@ -15,6 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 INPUTS = ROOT / 'bench' / 'peers'
 PROGRAMS = {'yade': 'yade', 'liggghts': 'liggghts', 'lammps': 'lmp'}
 CODES = ('grit', *PROGRAMS)
+RANKS = 'grit, ranks'  # grit in processes of one thread, as the other codes
 
 # Name of the law in each code. Differences: bench/README.md.
 LAWS = {
@@ -96,16 +97,18 @@ class Box:
     def run(self, code, law, threads, warm, steps):
         """Runs the code: Timed."""
         self.folder.mkdir(parents=True, exist_ok=True)
+        if code == RANKS:
+            return Timed(*self._grit(law, 1, warm, steps, ranks=threads))
         return Timed(*getattr(self, '_' + code)(law, threads, warm, steps))
 
-    def _grit(self, law, threads, warm, steps):
+    def _grit(self, law, threads, warm, steps, ranks=1):
         settings = self.packing.settings() | {'/stages/0/until/value': warm, '/stages/1/until/value': steps}
         window = grit.window(self.program, ROOT / 'bench' / 'scenes' / SCENES[law], self.folder / 'grit', threads,
-                             settings)
+                             settings, ranks=ranks)
         critical = window.facts['critical_time_step_s']
         return (window.particle_steps_per_second(), window.contacts_per_grain, window.others,
                 critical and window.facts['time_step_s'] / critical,
-                self.shares.of(LAWS[law]['grit'], threads, window) if self.shares else '')
+                self.shares.of(LAWS[law]['grit'], threads, window) if self.shares and ranks == 1 else '')
 
     def _yade(self, law, threads, warm, steps):
         given = {'grains': str(self._plain()), 'sides': self.packing.cell.sides(), 'law': law, 'density': 2600.0,

@@ -32,7 +32,7 @@ class Plot:
         for axis in (0, 1):
             low, high = self.low[axis], self.high[axis]
             # Powers of ten alone are too few on a short axis.
-            steps = (1, 2, 5) if high < 100 * low else (1,)
+            steps = range(1, 10) if high < 4 * low else (1, 2, 5) if high < 100 * low else (1,)
             values = [step * 10.0 ** power for power in range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
                       for step in steps]
             for value in [*values, 10.0 ** math.ceil(math.log10(high))]:

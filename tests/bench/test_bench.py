@@ -55,7 +55,7 @@ class Bench(unittest.TestCase):
         self.assertNotIn('Traceback', done.stderr)
 
     def test_each_script_explains_itself(self):
-        for script in ('compare', 'rows', 'check', 'roofline', 'growth'):
+        for script in ('compare', 'rows', 'check', 'roofline', 'growth', 'scale'):
             done = call(BENCH / script, '--help')
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn('usage:', done.stdout)
@@ -110,6 +110,19 @@ class Bench(unittest.TestCase):
             self.assertTrue(0 < row['figure'] < float('inf'), row)
             self.assertEqual(row['verdict'], '')  # a trial gives none
             self.assertIn(row['what'], done.stdout)
+
+    def test_ranks_are_counted(self):
+        from measure import grit  # knows the store from here on
+        if not grit.has_ranks(GRIT):
+            self.skipTest('built without MPI')
+        done = call(BENCH / 'scale', '--grit', GRIT, '--base', 500, '--grains', 2000, '--ranks', '2,3', '--out', self.place)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = (self.place / 'scale.md').read_text(encoding='utf-8')
+        for ranks in (2, 3):
+            row = next(line for line in page.splitlines() if line.startswith(f'| {ranks} | {2000 // ranks} |'))
+            neighbours, pairs, messages = (float(cell.strip(' %')) for cell in row.split('|')[3:6])
+            self.assertTrue(0.1 < neighbours < 3 and 1 < pairs < 100 and messages >= ranks - 1, row)
+        self.assertIn('</svg>', (self.place / 'scale.svg').read_text(encoding='utf-8'))
 
     def test_wrong_use_is_explained(self):
         compare = [BENCH / 'compare', '--grit', GRIT]

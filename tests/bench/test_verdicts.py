@@ -25,7 +25,7 @@ BENCH = ROOT / 'bench'
 sys.path.insert(0, str(BENCH))
 _store = tempfile.TemporaryDirectory()
 os.environ['GRIT_BENCH_STORE'] = _store.name
-from measure import bounds, disassembly, flow, grit, limits, machine, packing, peers  # noqa: E402
+from measure import bounds, disassembly, flow, grit, limits, machine, packing, peers, scaling  # noqa: E402
 
 STORE = Path(_store.name)
 
@@ -424,6 +424,38 @@ class Measuring(Given):
                   if path.stem == path.parent.name.replace('-', '_') or path.stem == path.parent.name]
         self.assertGreater(len(shapes), 6)
         self.assertEqual([shape for shape in shapes if f'{{"type", "{shape}"}}' not in kernels], [])
+
+
+class Scaling(unittest.TestCase):
+    @staticmethod
+    def fits(of_chunk=0.0, steps=100.0):
+        """Of ranks with 1000, 8000 and 64 000 particles, whose counts follow their surfaces."""
+        def count(ranks):
+            bodies = 512000 // ranks
+            neighbours = 8 / round(bodies ** (1 / 3))
+            return scaling.Count({'neighbours': neighbours, 'shared_pairs': neighbours / 4,
+                                  'step': {'messages': 10.0, 'bytes': 72 * neighbours * bodies},
+                                  'search': {'bytes': 0.0, 'gathers': 0.0, 'gathered_bytes': of_chunk * 2000 * (1 - 1 / ranks)}}, 0)
+        found = {ranks: count(ranks) for ranks in (8, 64, 512)}
+        return scaling.Fits(512000, found, scaling.Alone(50e-9, 0.8, steps))
+
+    def test_a_node(self):
+        # 8000 particles: 0.4 ms; 0.4 neighbours and 0.1 pairs more, so 1.08 times 1.03 as long; ten messages and twelve levels of
+        # reductions of 2 us each; 3200 neighbours of 72 bytes at 5 GB/s.
+        expected = 0.4e-3 / (0.4e-3 * 1.08 * 1.03 + 22 * 2e-6 + 3200 * 72 / 5e9)
+        self.assertAlmostEqual(self.fits().efficiency(8000, 64), expected, places=12)
+        self.assertEqual(self.fits().efficiency(8000, 1), 1)
+
+    def test_many_nodes(self):
+        # As before, with two levels more, and sixteen times the bytes of a rank through the network of its node.
+        expected = 0.4e-3 / (0.4e-3 * 1.08 * 1.03 + 26 * 2e-6 + 3200 * 72 / 5e9 + 16 * 3200 * 72 / 25e9)
+        self.assertAlmostEqual(self.fits().efficiency(8000, 256), expected, places=12)
+
+    def test_what_all_ranks_collect(self):
+        # 100 bytes of each of 8000 chunks, at 5 GB/s, in each tenth step.
+        fits = self.fits(of_chunk=100.0, steps=10.0)
+        slower = 1 / fits.efficiency(8000, 256) - 1 / self.fits().efficiency(8000, 256)
+        self.assertAlmostEqual(slower, 100 * 8000 * 256 / 256 / 5e9 / 10 / 0.4e-3, places=12)
 
 
 unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
