@@ -159,26 +159,43 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SameBits,
                            return name;
                          });
 
-// What a rank saves is the whole state, from which any number of ranks goes on.
-TEST(SavedOnRanks, GoesOnWithAnotherNumber) {
-  const std::string file = "simple-shear/quick.json";
-  SharedRun alone(file);
-  alone.steps(60);
-  const Bytes expected = alone.state();
-  std::vector<std::byte> saved;
-  on_ranks(2, [&](Communicator& all) {
-    SharedRun shared(file, &all);
-    shared.steps(35);
-    const Checkpoint now = shared.parts->save();
-    if (all.rank() == 0) saved = now.state;
-  });
-  on_ranks(3, [&](Communicator& all) {
-    SharedRun resumed(file, &all);
-    resumed.parts->resume({.stage = "", .time = 0, .step = 0, .state = saved});
-    resumed.steps(25);
-    expect_state(resumed, expected);
-  });
+/// Bodies of a cloud that is compressed, and collide for the first time.
+Document collisions() {
+  const std::string until = R"(/until={"type": "steps", "value": 60, "of": null})";
+  return load_document(std::filesystem::path(GRIT_SOURCE_DIR) / "sims/simple-shear/quick.json",
+                       {"/stages/0" + until, "/stages/1" + until}, *registry(), "test");
 }
+
+class SavedOnRanks : public testing::TestWithParam<const char*> {};
+
+// What the first rank saves is the whole state, from which any number of ranks goes on.
+TEST_P(SavedOnRanks, GoesOnWithAnotherNumber) {
+  const bool dense = std::string_view(GetParam()) == "dense flow";
+  const Document document = dense ? dense_flow() : collisions();
+  constexpr std::size_t all_steps = 130;
+  SharedRun alone(document);
+  alone.steps(all_steps);
+  const Bytes expected = alone.state();
+  for (const std::size_t before : {35u, 70u, 105u}) {
+    std::vector<std::byte> saved;
+    on_ranks(2, [&](Communicator& all) {
+      SharedRun shared(document, &all);
+      shared.steps(before);
+      const Checkpoint now = shared.parts->save();
+      if (all.rank() == 0) saved = now.state;
+    });
+    // Some of seven ranks have no chunk.
+    for (const unsigned count : {3u, 7u})
+      on_ranks(count, [&](Communicator& all) {
+        SharedRun resumed(document, &all);
+        resumed.parts->resume({.stage = "", .time = 0, .step = 0, .state = saved});
+        resumed.steps(all_steps - before);
+        expect_state(resumed, expected);
+      });
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SavedOnRanks, testing::Values("collisions", "dense flow"));
 
 TEST(RanksAlone, CannotAskForOthers) {
   on_ranks(2, [&](Communicator& all) {

@@ -540,7 +540,6 @@ ContactTable::Blocks ContactTable::append_own_pairs(const ContactTable& from, st
 void ContactTable::append_block(const ContactTable& from, std::size_t chunk, std::span<const std::size_t> slots) {
   const std::size_t fields = fields_.size();
   std::uint8_t touches = 0, acts = 0;
-  float asleep_until = std::numeric_limits<float>::max();
   state_.resize(state_.size() + fields);
   StateLine* const lines = state_.data() + state_.size() - fields;
   for (std::size_t k = 0; k < block_size; ++k) {
@@ -556,10 +555,11 @@ void ContactTable::append_block(const ContactTable& from, std::size_t chunk, std
     touches |= bit(from.touching_[block]);
     if (!from.acting_.empty()) acts |= bit(from.acting_[block]);
     if (!there) continue;
-    asleep_until = std::min(asleep_until, from.asleep_until_[block]);
     for (std::size_t f = 0; f < fields; ++f) lines[f].lane[k] = from.history_of(c, f);
   }
-  touching_.push_back(touches), asleep_until_.push_back(asleep_until);
+  // Evaluated at once: the approach until which the whole chunk sleeps is bounded by chunks that this rank does not
+  // know.
+  touching_.push_back(touches), asleep_until_.push_back(0);
   if (!from.acting_.empty()) acting_.push_back(acts);
 }
 
