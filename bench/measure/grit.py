@@ -95,16 +95,21 @@ def has_ranks(path):
     return shutil.which('mpirun') is not None and (Path(path).parents[1] / 'lib/grit/mpi.so').is_file()
 
 
+# Open MPI refuses to run as root otherwise, as in a container.
+MPI_AS_ROOT = {'OMPI_ALLOW_RUN_AS_ROOT': '1', 'OMPI_ALLOW_RUN_AS_ROOT_CONFIRM': '1'} if os.geteuid() == 0 else {}
+
+
+def on_ranks(ranks, words):
+    """The command on so many ranks; one rank needs no MPI."""
+    return ['mpirun', '--bind-to', 'none', '--oversubscribe', '-n', str(ranks), *words] if ranks > 1 else words
+
+
 def run(path, scene, folder, threads, settings=None, environment=None, friends=(), ranks=1):
     """Runs a scene, pinned to as many cores as it has threads; threads None: all. `ranks`: processes, each with so many threads."""
     file = _fresh(folder)
     threads = threads or len(os.sched_getaffinity(0))
-    words = command(path, scene, folder, threads, settings)
-    if ranks > 1:
-        words = ['mpirun', '--bind-to', 'none', '--oversubscribe', '-n', str(ranks), *words]
-        if os.geteuid() == 0:  # Open MPI refuses otherwise, as in a container
-            environment = (environment or {}) | {'OMPI_ALLOW_RUN_AS_ROOT': '1', 'OMPI_ALLOW_RUN_AS_ROOT_CONFIRM': '1'}
-    done = machine.run(words, threads * ranks, ROOT, environment, friends=friends)
+    words = on_ranks(ranks, command(path, scene, folder, threads, settings))
+    done = machine.run(words, threads * ranks, ROOT, MPI_AS_ROOT | (environment or {}), friends=friends)
     return Done(done.output, done.others, _facts(path, file))
 
 

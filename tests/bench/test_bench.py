@@ -138,6 +138,7 @@ class Bench(unittest.TestCase):
         for side in ('-1', 'nan', 'inf'):
             self.refused(call(*compare, '--packing', self.packing, f'--side={side}'), '--side', f'"{side}"', 'above 0')
         self.refused(call(*compare, '--packing', self.packing, '--grains', 500), '--grains', 'beside --packing')
+        self.refused(call(BENCH / 'scale', '--ranks', '1,2'), '--ranks', 'found 1', 'allowed are 2 and more')
         self.refused(call(*compare, '--side', 1), '--side', 'without --packing')
         self.refused(call(*compare, '--scenes', 'drum,sand'), '--scenes', 'found "drum,sand"', 'allowed are dense, drum, silo')
         self.refused(call(*compare, '--scenes', 'drum', '--quick'), '--scenes', 'found "drum" beside --quick')

@@ -72,7 +72,7 @@ TEST(SharedArchive, IsSentInPieces) {
     std::vector<std::jthread> threads;
     for (unsigned rank = 0; rank < 3; ++rank) threads.emplace_back(work, rank);
   }
-  EXPECT_EQ(board.longest_letter(), Archive::piece);
+  EXPECT_EQ(board.longest_message(), Archive::piece);
 }
 
 TEST(SharedArchive, IsRestoredInWholeOnEachRank) {

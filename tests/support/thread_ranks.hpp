@@ -38,20 +38,20 @@ class Board {
   /// A message between two ranks, of which no other rank knows.
   void send(unsigned from, unsigned to, std::span<const std::byte> bytes) {
     const std::lock_guard lock(mutex_);
-    letters_[{from, to}].emplace_back(bytes.begin(), bytes.end());
-    longest_letter_ = std::max(longest_letter_, bytes.size());
+    messages_[{from, to}].emplace_back(bytes.begin(), bytes.end());
+    longest_message_ = std::max(longest_message_, bytes.size());
     arrived_.notify_all();
   }
   std::vector<std::byte> receive(unsigned from, unsigned to) {
     std::unique_lock lock(mutex_);
-    auto& letters = letters_[{from, to}];
-    arrived_.wait(lock, [&] { return !letters.empty() || failed_; });
-    if (letters.empty()) throw std::runtime_error("another rank has failed");
-    std::vector<std::byte> first = std::move(letters.front());
-    letters.pop_front();
+    auto& messages = messages_[{from, to}];
+    arrived_.wait(lock, [&] { return !messages.empty() || failed_; });
+    if (messages.empty()) throw std::runtime_error("another rank has failed");
+    std::vector<std::byte> first = std::move(messages.front());
+    messages.pop_front();
     return first;
   }
-  std::size_t longest_letter() const { return longest_letter_; }
+  std::size_t longest_message() const { return longest_message_; }
   /// A rank ends by an exception: the others must not wait for it.
   void leave() {
     {
@@ -71,10 +71,10 @@ class Board {
   std::vector<std::vector<Communicator::Message>> shown_;
   std::barrier<> barrier_;
   std::atomic<bool> failed_{false};
-  std::size_t longest_letter_ = 0;
+  std::size_t longest_message_ = 0;
   std::mutex mutex_;
   std::condition_variable arrived_;
-  std::map<std::pair<unsigned, unsigned>, std::deque<std::vector<std::byte>>> letters_;  // by sender and receiver
+  std::map<std::pair<unsigned, unsigned>, std::deque<std::vector<std::byte>>> messages_;  // by sender and receiver
 };
 
 class ThreadRank final : public Communicator {

@@ -105,9 +105,10 @@ class Archive {
   /// The saved bytes, unless they are passed on.
   const std::vector<std::byte>& bytes() const& { return bytes_; }
   std::vector<std::byte> bytes() && { return std::move(bytes_); }
-  /// Passes on the last bytes.
+  /// Passes on the last bytes, if it passes them on.
   void flush() {
-    if (take_ && !bytes_.empty()) take_(bytes_);
+    if (!take_ || bytes_.empty()) return;
+    take_(bytes_);
     bytes_.clear();
   }
   /// Whether all bytes have been restored.

@@ -327,7 +327,7 @@ void Kernel::restore(const SceneDescription& scene, const Components& components
 }
 
 /// Names of the numbers that contacts keep, which the law declares.
-void Kernel::serialize_fields(SharedArchive& archive) {
+void Kernel::serialize_fields(Archive& archive) {
   std::vector<std::string> names, found;
   for (const StateField& field : state_.settings.fields) names.push_back(field.name);
   found = names;
@@ -358,7 +358,7 @@ void Kernel::serialize(Archive& archive) {
   archive.part("neighbour lists", 2);
   state_.lists.serialize(shared);
   archive.part("contact history", 1);
-  serialize_fields(shared);
+  serialize_fields(archive);
   archive.part("contacts", 2);
   state_.pairs.serialize(shared);
   archive.part("wall contacts", 3);

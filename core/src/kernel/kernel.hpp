@@ -102,7 +102,7 @@ class Kernel {
   /// Adds bodies from this one on to the statistics, and allocates their state.
   void count_in(std::size_t first, std::size_t first_clump);
   void serialize(Archive& archive);
-  void serialize_fields(SharedArchive& archive);
+  void serialize_fields(Archive& archive);
 
   State state_;
   mutable Passes passes_;  // const functions use threads, too

@@ -58,8 +58,7 @@ class StageRunner {
   /// Fraction of the present stage that is done, where its end can be foreseen.
   std::optional<double> progress() const;
 
-  /// Has the recorder keep what was recorded, and returns where the run is. Between two steps.
-  /// The present state; the records so far are flushed.
+  /// Has the recorder keep what was recorded, and returns the present state. Between two steps.
   StateToSave to_save();
   /// Samples and frame of the last instant, and the summary.
   void finish(RunSummary& summary);
