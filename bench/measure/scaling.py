@@ -35,6 +35,7 @@ class Fits:
         own = lambda ranks, one: one['neighbours'] * grains / ranks  # noqa: E731
         self.neighbours = mean(lambda ranks, one: one['neighbours'] * root(ranks))
         self.pairs = mean(lambda ranks, one: one['shared_pairs'] * root(ranks))
+        self.dependent = mean(lambda ranks, one: (1 - one['independent_pairs']) * root(ranks))
         self.bytes = mean(lambda ranks, one: one['step']['bytes'] / own(ranks, one))
         self.search_bytes = mean(lambda ranks, one: one['search']['bytes'] / own(ranks, one))
         self.of_chunk = mean(lambda ranks, one: one['search']['gathered_bytes'] / ((1 - 1 / ranks) * grains / CHUNK))
@@ -49,13 +50,16 @@ class Fits:
         leaving = CORES ** (2 / 3) * neighbours if ranks > CORES else 0  # of a node
         gathered = self.of_chunk * bodies * ranks / CHUNK
         computing = self.alone.seconds * bodies
+        messages, network = self.messages * LATENCY, leaving * self.bytes / NETWORK
+        meanwhile = computing * self.alone.contacts * max(0, 1 - self.dependent / bodies ** (1 / 3))
+        waiting = max(0, messages + network - meanwhile) / (messages + network)
         search = neighbours * self.search_bytes / COPY + leaving * self.search_bytes / NETWORK + gathered / COPY + self.gathers * LATENCY * levels
         return {'computing': computing,
                 'shared pairs': computing * self.alone.contacts * self.pairs / bodies ** (1 / 3),
                 'imbalance': computing * (1 + self.alone.contacts * self.pairs / bodies ** (1 / 3)) * IMBALANCE,
-                'messages': self.messages * LATENCY,
                 'copies in a node': neighbours * self.bytes / COPY,
-                'network': leaving * self.bytes / NETWORK,
+                'waiting for messages': waiting * messages,
+                'waiting for the network': waiting * network,
                 'reductions': 2 * LATENCY * levels,
                 'searches': search / self.alone.steps}
 

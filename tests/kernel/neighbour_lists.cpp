@@ -41,16 +41,16 @@ TEST_F(Lists, FastBodiesGetWiderSkins) {
 TEST_F(Lists, AreDueOnceABodyHasUsedUpItsSkin) {
   passes_.chunks()[0].motion.largest_speed = 0.9 * least_skin;
   state_.bodies.position[0].y += 0.9 * least_skin;
-  state_.lists.advance(1, 0, {}, passes_);
+  state_.lists.advance(1, 0, passes_);
   EXPECT_FALSE(due());
   state_.bodies.position[0].y += 0.2 * least_skin;
-  state_.lists.advance(1, 0, {}, passes_);
+  state_.lists.advance(1, 0, passes_);
   EXPECT_TRUE(due());
 }
 
 TEST_F(Lists, AreNotDueWhereABodyHasComeBack) {
   passes_.chunks()[0].motion.largest_speed = 0.9 * least_skin;
-  for (int i = 0; i < 5; ++i) state_.lists.advance(1, 0, {}, passes_);
+  for (int i = 0; i < 5; ++i) state_.lists.advance(1, 0, passes_);
   EXPECT_FALSE(due()) << "its true distance is 0";
 }
 
@@ -70,7 +70,7 @@ TEST_F(Lists, AreDueAtWallsAloneOnceAWallHasUsedUpItsSkin) {
 TEST_F(Lists, SkinsAtWallsIncludeTheWayBack) {
   passes_.chunks()[0].motion.largest_speed = 0.4 * least_skin;
   state_.bodies.position[0].y += 0.4 * least_skin;
-  state_.lists.advance(1, 0, {}, passes_);
+  state_.lists.advance(1, 0, passes_);
   EXPECT_DOUBLE_EQ(state_.lists.skins().at_walls(0), least_skin);
   state_.lists.begin_search_at_walls(state_.cell, state_.statistics, state_.time.dt, 0);
   EXPECT_DOUBLE_EQ(state_.lists.skins().at_walls(0), 1.4 * least_skin);
@@ -85,9 +85,9 @@ TEST_F(Lists, AreDueOnRequest) {
 
 TEST_F(Lists, AreDueOnceStrainHasUsedUpTheSkins) {
   passes_.chunks()[0].motion.largest_speed = 0;
-  state_.lists.advance(1, 1.9 * least_skin, {}, passes_);
+  state_.lists.advance(1, 1.9 * least_skin, passes_);
   EXPECT_FALSE(due()) << "two bodies share it";
-  state_.lists.advance(1, 0.2 * least_skin, {}, passes_);
+  state_.lists.advance(1, 0.2 * least_skin, passes_);
   EXPECT_TRUE(due());
 }
 

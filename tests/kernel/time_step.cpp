@@ -87,7 +87,7 @@ TEST_F(TimeStep, PrescribedIsComparedWithNewContactsUnlessItMayBeUnstable) {
   const double before = control_.critical();
   state_.bodies.velocity[0].w *= 4;  // one body is lighter, both have moved
   passes_.chunks()[0].motion.largest_speed = 0.2 * radius;
-  state_.lists.advance(1, 0, {}, passes_);
+  state_.lists.advance(1, 0, passes_);
   control_.follow(control_.due(state_, passes_), state_, view_, bounds_, passes_);
   EXPECT_EQ(control_.critical(), before);
   state_.settings.time_step.allow_unstable = false;

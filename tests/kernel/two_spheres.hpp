@@ -83,7 +83,7 @@ inline void search(State& state, Passes& passes, const Renumbering& now = {}) {
 /// Evaluates the contacts of the only chunk.
 inline void evaluate(State& state) {
   std::fill(state.sum.begin(), state.sum.end(), BodySum{});
-  state.overlap = state.pairs.evaluate(0, state.instant(false), state.sum.data(), nullptr);
+  state.overlap = state.pairs.evaluate(ContactTable::Kind::within, 0, state.instant(false), state.sum.data(), nullptr);
   state.pairs.gather(0, state.sum.data());
 }
 

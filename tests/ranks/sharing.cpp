@@ -56,6 +56,7 @@ TEST(Sharing, CountsWhatTwoRanksHaveTwice) {
     EXPECT_EQ(halo.bodies(), 1u);
     EXPECT_EQ(halo.pairs(), count / 2);
     EXPECT_EQ(halo.shared_pairs(), 1u);
+    EXPECT_EQ(halo.independent_pairs(), count / 2 - 1);
 
     SharingRecord record;
     record.steps_end(ranks, 0);
@@ -63,8 +64,9 @@ TEST(Sharing, CountsWhatTwoRanksHaveTwice) {
     for (int step = 0; step < 10; ++step) {
       Bodies moved = bodies;
       std::vector<double> of_chunk(chunks_of(count), ranks.rank());
-      halo.exchange(
-          moved, [&](std::size_t chunk) -> double& { return of_chunk[chunk]; }, ranks);
+      const auto number = [&](std::size_t chunk) -> double& { return of_chunk[chunk]; };
+      halo.begin(moved, number, ranks);
+      halo.finish(moved, number, ranks);
       EXPECT_EQ(of_chunk[ranks.rank() == 0 ? 2 : 1], 1.0 - ranks.rank()) << "the chunk beyond";
       EXPECT_FALSE(ranks.any(false));
     }
@@ -75,6 +77,7 @@ TEST(Sharing, CountsWhatTwoRanksHaveTwice) {
     EXPECT_EQ(found.imbalance, 0.25);
     EXPECT_DOUBLE_EQ(found.neighbours, 2.0 / static_cast<double>(count));
     EXPECT_DOUBLE_EQ(found.shared_pairs, 1.0 / static_cast<double>(count - 1));
+    EXPECT_DOUBLE_EQ(found.independent_pairs, 1 - 2.0 / static_cast<double>(count));
     EXPECT_EQ(found.step.messages, 1);
     EXPECT_EQ(found.step.bytes, 10 * sizeof(double));
     EXPECT_EQ(found.step.gathers, 1);

@@ -6,11 +6,12 @@
 #include <barrier>
 #include <condition_variable>
 #include <cstring>
-#include <deque>
 #include <exception>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <thread>
@@ -38,18 +39,23 @@ class Board {
   /// A message between two ranks, of which no other rank knows.
   void send(unsigned from, unsigned to, std::span<const std::byte> bytes) {
     const std::lock_guard lock(mutex_);
-    messages_[{from, to}].emplace_back(bytes.begin(), bytes.end());
+    Mail& mail = mail_[{from, to}];
+    mail.arrived[mail.sent++].assign(bytes.begin(), bytes.end());
     longest_message_ = std::max(longest_message_, bytes.size());
     arrived_.notify_all();
   }
-  std::vector<std::byte> receive(unsigned from, unsigned to) {
+  /// The number of the next message from one rank to another: messages arrive as they were expected.
+  std::size_t expect(unsigned from, unsigned to) {
+    const std::lock_guard lock(mutex_);
+    return mail_[{from, to}].expected++;
+  }
+  /// Waits for a message. Nothing if another rank has failed.
+  std::optional<std::vector<std::byte>> receive(unsigned from, unsigned to, std::size_t number) {
     std::unique_lock lock(mutex_);
-    auto& messages = messages_[{from, to}];
-    arrived_.wait(lock, [&] { return !messages.empty() || failed_; });
-    if (messages.empty()) throw std::runtime_error("another rank has failed");
-    std::vector<std::byte> first = std::move(messages.front());
-    messages.pop_front();
-    return first;
+    auto& messages = mail_[{from, to}].arrived;
+    arrived_.wait(lock, [&] { return messages.contains(number) || failed_; });
+    if (!messages.contains(number)) return {};
+    return std::move(messages.extract(number).mapped());
   }
   std::size_t longest_message() const { return longest_message_; }
   /// A rank ends by an exception: the others must not wait for it.
@@ -74,10 +80,26 @@ class Board {
   std::size_t longest_message_ = 0;
   std::mutex mutex_;
   std::condition_variable arrived_;
-  std::map<std::pair<unsigned, unsigned>, std::deque<std::vector<std::byte>>> messages_;  // by sender and receiver
+  struct Mail {
+    std::size_t sent = 0, expected = 0;
+    std::map<std::size_t, std::vector<std::byte>> arrived;
+  };
+  std::map<std::pair<unsigned, unsigned>, Mail> mail_;  // by sender and receiver
 };
 
 class ThreadRank final : public Communicator {
+  struct Expected final : Exchange {
+    Expected(Board& messages_board, unsigned own) : board(messages_board), rank(own) {}
+    /// Where another rank has failed, the next function of all ranks throws.
+    ~Expected() override {
+      for (const auto& [one, number] : messages)
+        if (const auto found = board.receive(one.rank, rank, number)) copy(*found, one.bytes);
+    }
+    Board& board;
+    unsigned rank;
+    std::vector<std::pair<Message, std::size_t>> messages;
+  };
+
  public:
   ThreadRank(Board& board, unsigned rank) : board_(board), rank_(rank) {}
 
@@ -105,9 +127,11 @@ class ThreadRank final : public Communicator {
       }
     });
   }
-  void exchange(std::span<const Message> sent, std::span<const Message> received) override {
+  std::unique_ptr<Exchange> begin(std::span<const Message> sent, std::span<const Message> received) override {
     for (const Message& one : sent) board_.send(rank_, one.rank, one.bytes);
-    for (const Message& one : received) copy(board_.receive(one.rank, rank_), one.bytes);
+    auto all = std::make_unique<Expected>(board_, rank_);
+    for (const Message& one : received) all->messages.emplace_back(one, board_.expect(one.rank, rank_));
+    return all;
   }
   bool finish(double) override {
     board_.share(rank_, {}, [](const auto&) {});

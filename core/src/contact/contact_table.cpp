@@ -188,10 +188,15 @@ void ContactTable::take_chunks(const Ranks& ranks) {
 }
 
 void ContactTable::find_evaluated() {
-  evaluated_.clear();
-  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk)
-    if ((chunk >= first_own_ && chunk < last_own_) || chunks_[chunk].across.first < chunks_[chunk].across.last)
-      evaluated_.push_back(static_cast<std::uint32_t>(chunk));
+  evaluated_.clear(), shared_.clear();
+  is_shared_.assign(chunks_.size(), 0);
+  const auto owns = [this](std::size_t chunk) { return chunk >= first_own_ && chunk < last_own_; };
+  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
+    if (!owns(chunk) && chunks_[chunk].across.first == chunks_[chunk].across.last) continue;
+    evaluated_.push_back(static_cast<std::uint32_t>(chunk));
+    if (owns(chunk) && std::ranges::all_of(reached_[chunk], owns)) continue;
+    shared_.push_back(static_cast<std::uint32_t>(chunk)), is_shared_[chunk] = 1;
+  }
 }
 
 std::vector<ContactTable::Sent> ContactTable::exchange_histories(const Renumbering& now, Ranks& ranks) {
@@ -372,34 +377,31 @@ PairBatch ContactTable::batch(Blocks blocks, const Instant& at, std::uint32_t la
           .losses = nullptr};
 }
 
-double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum, Losses* losses) {
+double ContactTable::evaluate(Kind kind, std::size_t chunk, const Instant& at, BodySum* sum, Losses* losses) {
   const auto bodies = static_cast<std::uint32_t>(at.bodies.count());
   const auto end = static_cast<std::uint32_t>(std::min<std::size_t>(bodies, (chunk + 1) * chunk_bodies));
-  const Blocks within = chunks_[chunk].within, across = chunks_[chunk].across;
-  double largest = 0;
-  const auto evaluate = [&](Blocks blocks, PairBatch pairs, double closing) {
-    if (blocks.first == blocks.last) return;
-    pairs.closing = closing;
-    pairs.state = state_.empty() ? nullptr : state_.front().lane;
-    pairs.touching = touching_.data();
-    pairs.acting = acting_.empty() ? nullptr : acting_.data();
-    pairs.asleep_until = asleep_until_.data();
-    pairs.sum = sum;
-    pairs.losses = losses;
-    at.law.evaluate_pairs(pairs);
-    largest = std::max(largest, pairs.largest_overlap);
-  };
+  const Blocks blocks = chunks_[chunk].of(kind), across = chunks_[chunk].across;
+  if (blocks.first == blocks.last) return 0;
+  PairBatch pairs = batch(blocks, at, end - 1);
   // Meanwhile, bodies of other chunks are prefetched, then those of the chunk that is likely next.
-  PairBatch own = batch(within, at, end - 1);
-  own.next = b_.data() + std::size_t{across.first} * block_size;
-  own.next_count = static_cast<std::uint32_t>((across.near - across.first) * block_size);
-  evaluate(within, own, closing_within(chunk, at.skins));
-  PairBatch others = batch(across, at, end - 1);
-  others.row = row_.data() + (std::size_t{across.first} * block_size - first_cross_);
-  others.next_first = end;
-  others.next_count = std::min(bodies, end + static_cast<std::uint32_t>(chunk_bodies)) - end;
-  evaluate(across, others, closing_across(chunk, at.skins));
-  return largest;
+  if (kind == Kind::within) {
+    pairs.next = b_.data() + std::size_t{across.first} * block_size;
+    pairs.next_count = static_cast<std::uint32_t>((across.near - across.first) * block_size);
+    pairs.closing = closing_within(chunk, at.skins);
+  } else {
+    pairs.row = row_.data() + (std::size_t{across.first} * block_size - first_cross_);
+    pairs.next_first = end;
+    pairs.next_count = std::min(bodies, end + static_cast<std::uint32_t>(chunk_bodies)) - end;
+    pairs.closing = closing_across(chunk, at.skins);
+  }
+  pairs.state = state_.empty() ? nullptr : state_.front().lane;
+  pairs.touching = touching_.data();
+  pairs.acting = acting_.empty() ? nullptr : acting_.data();
+  pairs.asleep_until = asleep_until_.data();
+  pairs.sum = sum;
+  pairs.losses = losses;
+  at.law.evaluate_pairs(pairs);
+  return pairs.largest_overlap;
 }
 
 void ContactTable::evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,

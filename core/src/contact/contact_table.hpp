@@ -51,13 +51,21 @@ class ContactTable {
     const Skins& skins;
     bool again = false;  ///< whether this instant has been evaluated before
   };
-  /// Evaluates one chunk: writes its rows and adds to the sums of its bodies, by index, and of no others. Returns the
-  /// largest overlap over a radius.
-  double evaluate(std::size_t chunk, const Instant& at, BodySum* sum, Losses* losses);
-  /// The chunks to evaluate, in ascending order: the own ones, and others with pairs of own bodies.
-  const std::vector<std::uint32_t>& evaluated() const { return evaluated_; }
   /// Pairs of bodies of one chunk, or of two.
   enum class Kind { within, across };
+  /// Evaluates such pairs of one chunk, those within it first: writes their rows and adds to the sums of its bodies, by
+  /// index, and of no others. Returns the largest overlap over a radius.
+  double evaluate(Kind kind, std::size_t chunk, const Instant& at, BodySum* sum, Losses* losses);
+  /// The chunks to evaluate, in ascending order: the own ones, and others with pairs of own bodies.
+  const std::vector<std::uint32_t>& evaluated() const { return evaluated_; }
+  /// Those of them whose pairs across chunks are with bodies of other ranks, too.
+  const std::vector<std::uint32_t>& shared() const { return shared_; }
+  bool is_shared(std::size_t chunk) const { return is_shared_[chunk] != 0; }
+  /// Whether pairs of this kind, of the chunk of this candidate, are of own bodies only.
+  bool is_independent(std::size_t c) const {
+    const std::size_t chunk = a_[c] / chunk_bodies;
+    return !is_shared(chunk) || b_[c] / chunk_bodies == chunk;
+  }
   /// Calls use(candidate, row) for the contacts of own chunks at an evaluated instant, in order. Those of all ranks
   /// within chunks come before all across them.
   template <class Use>
@@ -261,6 +269,7 @@ class ContactTable {
   std::vector<Sent> exchange_histories(const Renumbering& now, Ranks& ranks);
   /// Which chunks are own ones, after they have been divided among ranks.
   void take_chunks(const Ranks& ranks);
+  /// Finds the chunks to evaluate, and those shared.
   void find_evaluated();
   /// Makes what follows from the lists.
   void finish(Ranks ranks);
@@ -302,7 +311,8 @@ class ContactTable {
   Cuts cuts_;                                        // which rank had which chunk at the last rebuild
   bool whole_ = true;                                // whether it has the pairs of all ranks
   std::size_t first_own_ = 0, last_own_ = 0;         // chunks
-  std::vector<std::uint32_t> evaluated_;
+  std::vector<std::uint32_t> evaluated_, shared_;
+  std::vector<std::uint8_t> is_shared_;  // by chunk
   // Used by rebuilds only. They are kept, as new pages would have to be cleared each time.
   LargeArray<Former> formers_;
   LargeArray<double> field_;

@@ -48,7 +48,7 @@ class CriticalStep {
     double near;     ///< m
     double ahead;    ///< distance of facets that bodies may reach before the next evaluation [m]
     double overlap;  ///< minimum overlap with a body of the same size, over its radius
-    const Halo& halo;
+    Halo& halo;
     Ranks& ranks;
   };
   /// Evaluates all chunks.

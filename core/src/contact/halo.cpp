@@ -2,13 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
+#include <utility>
 
 namespace grit {
+namespace {
+
+/// Of a body; its radius, mass and inertia are known.
+constexpr std::array moving_arrays{&Bodies::position, &Bodies::velocity, &Bodies::spin};
+
+}  // namespace
 
 void Halo::build(const ContactTable& pairs, const Ranks& ranks) {
+  messages_.reset();
   sent_.assign(ranks.count(), {}), received_.assign(ranks.count(), {});
   out_.resize(ranks.count()), in_.resize(ranks.count());
-  pairs_ = shared_pairs_ = 0;
+  pairs_ = shared_pairs_ = independent_pairs_ = 0;
   chunks_.clear();
   if (!ranks.several()) return;
   const auto add = [&](std::uint32_t own, std::uint32_t other) {
@@ -20,6 +29,7 @@ void Halo::build(const ContactTable& pairs, const Ranks& ranks) {
   pairs.each_candidate([&](std::size_t c) {
     const std::uint32_t a = pairs.a(c), b = pairs.b(c);
     ++pairs_;
+    if (pairs.is_independent(c)) ++independent_pairs_;
     if (!ranks.owns_body(a)) add(b, a);
     else if (!ranks.owns_body(b)) add(a, b);
   });
@@ -43,9 +53,10 @@ std::size_t Halo::bodies() const {
   return count;
 }
 
-template <class Pack, class Unpack>
-void Halo::exchange(std::size_t of_body, std::size_t of_chunk, Pack pack, Unpack unpack, Ranks& ranks) const {
+template <class Pack>
+void Halo::begin(std::size_t of_body, std::size_t of_chunk, Pack pack, Ranks& ranks) {
   if (!ranks.several()) return;
+  if (messages_) throw std::logic_error("bodies of other ranks are still on their way");
   const auto numbers = [&](const Lists& lists) {
     return of_body * lists.bodies.size() + of_chunk * lists.chunks.size();
   };
@@ -55,52 +66,64 @@ void Halo::exchange(std::size_t of_body, std::size_t of_chunk, Pack pack, Unpack
     pack(out_[r].data(), sent_[r]);
     Ranks::add(sent, r, out_[r]), Ranks::add(received, r, in_[r]);
   }
-  ranks.exchange(sent, received);
+  messages_ = ranks.begin(sent, received);
+}
+
+template <class Unpack>
+void Halo::finish(Unpack unpack, Ranks& ranks) {
+  if (!messages_) return;
+  ranks.finish(std::move(messages_));
   for (unsigned r = 0; r < ranks.count(); ++r) unpack(in_[r].data(), received_[r]);
 }
 
-void Halo::exchange(std::vector<double>& by_body, Ranks& ranks) const {
-  exchange(
+void Halo::exchange(std::vector<double>& by_body, Ranks& ranks) {
+  begin(
       1, 0,
       [&](double* to, const Lists& own) {
         for (const std::uint32_t i : own.bodies) *to++ = by_body[i];
       },
+      ranks);
+  finish(
       [&](const double* from, const Lists& others) {
         for (const std::uint32_t i : others.bodies) by_body[i] = *from++;
       },
       ranks);
 }
 
-void Halo::exchange(Renumbering& now, Ranks& ranks) const {
-  exchange(
+void Halo::exchange(Renumbering& now, Ranks& ranks) {
+  begin(
       1, 0,
       [&](double* to, const Lists& own) {
         for (const std::uint32_t i : own.bodies) *to++ = now(i);
       },
+      ranks);
+  finish(
       [&](const double* from, const Lists& others) {
         for (const std::uint32_t i : others.bodies) now.set(i, static_cast<std::uint32_t>(*from++));
       },
       ranks);
 }
 
-void Halo::exchange(Bodies& bodies, const std::function<double&(std::size_t chunk)>& of_chunk, Ranks& ranks) const {
-  const std::array<LargeArray<Row>*, 3> arrays{&bodies.position, &bodies.velocity, &bodies.spin};
-  // Radius, mass and inertia are known.
-  const std::size_t numbers = 3 * arrays.size();
-  exchange(
-      numbers, 1,
+void Halo::begin(const Bodies& bodies, const OfChunk& of_chunk, Ranks& ranks) {
+  begin(
+      3 * moving_arrays.size(), 1,
       [&](double* to, const Lists& own) {
         for (const std::uint32_t i : own.bodies)
-          for (const auto* array : arrays) {
-            const Row& row = (*array)[i];
+          for (const auto array : moving_arrays) {
+            const Row& row = (bodies.*array)[i];
             *to++ = row.x, *to++ = row.y, *to++ = row.z;
           }
         for (const std::uint32_t chunk : own.chunks) *to++ = of_chunk(chunk);
       },
+      ranks);
+}
+
+void Halo::finish(Bodies& bodies, const OfChunk& of_chunk, Ranks& ranks) {
+  finish(
       [&](const double* from, const Lists& others) {
         for (const std::uint32_t i : others.bodies)
-          for (auto* array : arrays) {
-            Row& row = (*array)[i];
+          for (const auto array : moving_arrays) {
+            Row& row = (bodies.*array)[i];
             row.x = *from++, row.y = *from++, row.z = *from++;
           }
         for (const std::uint32_t chunk : others.chunks) of_chunk(chunk) = *from++;

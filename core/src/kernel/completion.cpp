@@ -4,8 +4,16 @@
 
 namespace grit {
 
+void take_halo(State& state, Passes& passes) {
+  state.halo.finish(
+      state.bodies, [&](std::size_t chunk) -> double& { return passes.chunks()[chunk].motion.largest_speed; },
+      passes.ranks());
+  state.lists.advance_near(state.halo.chunks(), passes);
+}
+
 void complete_bodies(State& state, Passes& passes) {
   if (state.complete.bodies) return;
+  take_halo(state, passes);
   Bodies& bodies = state.bodies;
   const auto complete = [&](auto&... arrays) {
     ((arrays.empty() ? void() : passes.ranks().complete_bodies(arrays, bodies.count())), ...);

@@ -6,6 +6,8 @@
 
 namespace grit {
 
+/// Takes what other ranks have sent of bodies near own ones, after the last motion. Nothing if that has been done.
+void take_halo(State& state, Passes& passes);
 /// Completes the bodies if those of other ranks have moved; all ranks must call this.
 void complete_bodies(State& state, Passes& passes);
 /// The same of the sums of contact forces.

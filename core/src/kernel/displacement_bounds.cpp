@@ -88,7 +88,7 @@ void DisplacementBounds::advance(State& state, Passes& passes) {
       dt * state.cell.largest_rate() * 2 *
           (state.statistics.largest_radius + state.lists.skins().largest() + 0.5 * state.lists.skins().reach()) +
       2 * grown_;
-  state.lists.advance(dt, strained, state.halo.chunks(), passes);
+  state.lists.advance(dt, strained, passes);
   const auto [overlap, fastest, gone, finite] = passes.extremes();
   rate_ = state.bodies.count() > 0 ? fastest / state.statistics.smallest_radius : 0;
   if (!finite || dt * rate_ > harmless(state)) rate_ = rate_of_bodies(state, passes);

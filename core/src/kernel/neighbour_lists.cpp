@@ -121,13 +121,19 @@ void NeighbourLists::begin_search_at_walls(const DeformingCell& cell, const Popu
   ++searches_at_walls_;
 }
 
-void NeighbourLists::advance(double dt, double strained, std::span<const std::uint32_t> near, const Passes& passes) {
+void NeighbourLists::advance(double dt, double strained, const Passes& passes) {
   strain_travel_ += strained;
-  const auto go = [&](std::size_t chunk) {
-    skins_.go(chunk, dt * passes.chunks()[chunk].motion.largest_speed, 0.5 * strained);
-  };
-  for (std::size_t chunk = passes.ranks().first(); chunk < passes.ranks().last(); ++chunk) go(chunk);
-  for (const std::uint32_t chunk : near) go(chunk);
+  last_ = {dt, strained, true};
+  for (std::size_t chunk = passes.ranks().first(); chunk < passes.ranks().last(); ++chunk) go(chunk, passes);
+}
+
+void NeighbourLists::advance_near(std::span<const std::uint32_t> near, const Passes& passes) {
+  if (!std::exchange(last_.near_chunks_wait, false)) return;
+  for (const std::uint32_t chunk : near) go(chunk, passes);
+}
+
+void NeighbourLists::go(std::size_t chunk, const Passes& passes) {
+  skins_.go(chunk, last_.dt * passes.chunks()[chunk].motion.largest_speed, 0.5 * last_.strained);
 }
 
 double NeighbourLists::furthest_here(const Passes& passes, double dt) const {

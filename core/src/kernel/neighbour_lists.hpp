@@ -47,8 +47,9 @@ class NeighbourLists {
   void begin_search_at_walls(const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
                              double wall_speed);
   /// After a step of `dt` [s]; `strained`: upper bound of the approach of two surfaces by strain and growth [m].
-  /// `near`: chunks of other ranks whose bodies touch own ones.
-  void advance(double dt, double strained, std::span<const std::uint32_t> near, const Passes& passes);
+  void advance(double dt, double strained, const Passes& passes);
+  /// The same for chunks of other ranks near own ones, once their speeds are known.
+  void advance_near(std::span<const std::uint32_t> near, const Passes& passes);
   /// Upper bound of the displacement of own bodies since the last rebuild, and after a further step of `dt` [m].
   double furthest_here(const Passes& passes, double dt = 0) const;
   /// The same of all bodies.
@@ -68,6 +69,8 @@ class NeighbourLists {
  private:
   static constexpr std::uint64_t sort_every = 8;
   bool used_up(std::size_t chunk) const;
+  /// Takes into account how far a chunk's bodies have gone in the last step.
+  void go(std::size_t chunk, const Passes& passes);
   void lay_skins(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
                  double wall_speed, Passes& passes);
 
@@ -78,6 +81,10 @@ class NeighbourLists {
   Cell reference_cell_;
   std::vector<double> reaches_;  // of the law at the last rebuild
   double strain_travel_ = 0;
+  struct {
+    double dt = 0, strained = 0;
+    bool near_chunks_wait = false;
+  } last_;  // step
   std::uint64_t rebuilds_ = 0, searches_at_walls_ = 0;
   bool requested_ = true;
 };

@@ -13,10 +13,11 @@ class Ranks;
 
 /// Means over ranks and over the time until the last collection.
 struct Sharing {
-  double imbalance = 0;     ///< computing time of the busiest rank over the mean, less 1
-  double neighbours = 0;    ///< bodies of other ranks that a rank needs, over its own
-  double shared_pairs = 0;  ///< pairs that two ranks evaluate, over all
-  Traffic step, search;     ///< of a rank: in a step without neighbour search, and in a search
+  double imbalance = 0;          ///< computing time of the busiest rank over the mean, less 1
+  double neighbours = 0;         ///< bodies of other ranks that a rank needs, over its own
+  double shared_pairs = 0;       ///< pairs that two ranks evaluate, over all
+  double independent_pairs = 0;  ///< pairs that a rank evaluates while it receives bodies of others, over all its pairs
+  Traffic step, search;          ///< of a rank: in a step without neighbour search, and in a search
 };
 
 /// Collects what Sharing shows. All ranks must call its functions, in turns.
@@ -33,7 +34,7 @@ class SharingRecord {
   Traffic before_;          // that of this rank before the present steps or search
   // Sums over searches, of all ranks.
   double searches_ = 0, steps_ = 0;  // times the number of ranks
-  double bodies_ = 0, neighbours_ = 0, pairs_ = 0, shared_pairs_ = 0;
+  double bodies_ = 0, neighbours_ = 0, pairs_ = 0, shared_pairs_ = 0, independent_pairs_ = 0;
   Traffic in_steps_, in_searches_;
 };
 

@@ -179,6 +179,7 @@ void Stepper::follow_bodies() {
       renew = ranks.any(time_step_.due(state_, passes_));
     }
   }
+  if (search || renew || time_step_.requested()) take_halo(state_, passes_);
   if (search) rebuild();
   else time_step_.follow(renew, state_, view_, bounds_, passes_);
 }
@@ -198,18 +199,25 @@ bool Stepper::prepare() {
   return again;
 }
 
-void Stepper::evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps) {
-  ChunkResult& own = passes_.chunks()[chunk];
+void Stepper::evaluate_within(std::size_t chunk, bool again, BodySum* sum, Laps& laps) {
   const ChunkRange range(chunk, state_.bodies.count());
   std::fill(sum + range.first, sum + range.last, BodySum{});
-  if (!passes_.ranks().owns(chunk)) {
-    state_.pairs.evaluate(chunk, state_.instant(again), sum, nullptr);
-    return laps(own.time_of(StepPhase::contacts));
-  }
+  if (!passes_.ranks().owns(chunk)) return;  // has no such pairs here
+  ChunkResult& own = passes_.chunks()[chunk];
   own.losses = {};
-  Losses* const losses = balance_.is_kept() ? &own.losses : nullptr;
-  own.overlap = state_.pairs.evaluate(chunk, state_.instant(again), sum, losses);
+  own.overlap = state_.pairs.evaluate(ContactTable::Kind::within, chunk, state_.instant(again), sum,
+                                      balance_.is_kept() ? &own.losses : nullptr);
   laps(own.time_of(StepPhase::contacts));
+}
+
+void Stepper::evaluate_across(std::size_t chunk, bool again, BodySum* sum, Laps& laps) {
+  ChunkResult& own = passes_.chunks()[chunk];
+  const bool owned = passes_.ranks().owns(chunk);
+  Losses* const losses = owned && balance_.is_kept() ? &own.losses : nullptr;
+  const double overlap = state_.pairs.evaluate(ContactTable::Kind::across, chunk, state_.instant(again), sum, losses);
+  laps(own.time_of(StepPhase::contacts));
+  if (!owned) return;
+  own.overlap = std::max(own.overlap, overlap);
   if (state_.surfaces.empty()) return;
   own.overlap = std::max(own.overlap, state_.wall_contacts.evaluate(chunk, *state_.settings.law, state_.bodies,
                                                                     state_.statistics.one_material, state_.surfaces,
@@ -222,9 +230,11 @@ void Stepper::move(std::size_t chunk, const BodySum* sum, const MotionStep& step
 }
 
 void Stepper::sum_forces(bool again) {
+  take_halo(state_, passes_);
   BodySum* const sum = state_.sum.data();
-  passes_.each(state_.time.step, state_.pairs.evaluated(),
-               [&](std::size_t chunk, Laps& laps) { evaluate(chunk, again, sum, laps); });
+  passes_.each(state_.time.step, state_.pairs.evaluated(), [&](std::size_t chunk, Laps& laps) {
+    evaluate_within(chunk, again, sum, laps), evaluate_across(chunk, again, sum, laps);
+  });
   passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
     state_.pairs.gather(chunk, sum);
     laps(passes_.chunks()[chunk].time_of(StepPhase::motion));
@@ -395,20 +405,32 @@ void Stepper::step_on() {
     state_.pairs.gather(chunk, sum);
     move(chunk, sum, step);
   };
-  passes_.each(state_.time.step, state_.pairs.evaluated(), [&](std::size_t chunk, Laps& laps) {
+  // What needs no bodies of other ranks is evaluated while these are on their way.
+  passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
+    ChunkResult& result = passes_.chunks()[chunk];
+    result.moved = false;
+    if (state_.pairs.is_shared(chunk)) return evaluate_within(chunk, again, state_.sum.data(), laps);
     // Sums of a chunk that moves at once stay in the cache. The pointer is offset so that it is indexed by body: its
     // start lies before the array, but only valid elements are accessed.
     alignas(64) thread_local std::array<BodySum, chunk_bodies> here;
     const ChunkRange range(chunk, state_.bodies.count());
     const std::uintptr_t of_body_0 = reinterpret_cast<std::uintptr_t>(here.data()) - range.first * sizeof(BodySum);
     BodySum* const own = reinterpret_cast<BodySum*>(of_body_0);
-    evaluate(chunk, again, own, laps);
-    ChunkResult& result = passes_.chunks()[chunk];
-    const bool ready = readiness_.evaluated(chunk);
-    if (!passes_.ranks().owns(chunk)) return;
-    result.moved = ready;
+    evaluate_within(chunk, again, own, laps), evaluate_across(chunk, again, own, laps);
+    result.moved = readiness_.evaluated(chunk);
     if (result.moved) gather_and_move(chunk, own);
     else std::copy(own + range.first, own + range.last, state_.sum.data() + range.first);
+    laps(result.time_of(StepPhase::motion));
+  });
+  take_halo(state_, passes_);
+  passes_.each(state_.time.step, state_.pairs.shared(), [&](std::size_t chunk, Laps& laps) {
+    BodySum* const sum = state_.sum.data();
+    if (!passes_.ranks().owns(chunk)) evaluate_within(chunk, again, sum, laps);
+    evaluate_across(chunk, again, sum, laps);
+    if (!readiness_.evaluated(chunk) || !passes_.ranks().owns(chunk)) return;
+    ChunkResult& result = passes_.chunks()[chunk];
+    gather_and_move(chunk, sum);
+    result.moved = true;
     laps(result.time_of(StepPhase::motion));
   });
   late_.clear();
@@ -425,7 +447,7 @@ void Stepper::step_on() {
 void Stepper::bodies_moved() {
   if (!passes_.ranks().several()) return;
   state_.complete.bodies = false;
-  state_.halo.exchange(
+  state_.halo.begin(
       state_.bodies, [this](std::size_t chunk) -> double& { return passes_.chunks()[chunk].motion.largest_speed; },
       passes_.ranks());
 }

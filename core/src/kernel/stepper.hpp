@@ -67,10 +67,12 @@ class Stepper {
   /// Marks the bodies that engines remove.
   void mark_removed(std::vector<bool>& leaves) const;
   void update_surfaces();
-  /// Contacts of one chunk with others and with walls.
-  void evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps);
+  /// Contacts within one chunk.
+  void evaluate_within(std::size_t chunk, bool again, BodySum* sum, Laps& laps);
+  /// After these, its contacts with other chunks and with walls.
+  void evaluate_across(std::size_t chunk, bool again, BodySum* sum, Laps& laps);
   void move(std::size_t chunk, const BodySum* sum, const MotionStep& step);
-  /// Updates bodies of other ranks near own ones.
+  /// Begins to update bodies of other ranks near own ones; see take_halo().
   void bodies_moved();
   void sum_forces(bool again);
   void check_finite(const ActingEngine& one, std::span<const Row> force, std::span<const Row> moment) const;

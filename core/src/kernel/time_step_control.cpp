@@ -52,7 +52,7 @@ void check_advance(const State& state) {
 
 }  // namespace
 
-CriticalStep::Instant TimeStepControl::near_contacts(const State& state, Passes& passes) const {
+CriticalStep::Instant TimeStepControl::near_contacts(State& state, Passes& passes) const {
   return {.bodies = state.bodies,
           .pairs = state.pairs,
           .walls = state.wall_contacts,

@@ -15,6 +15,7 @@ class TimeStepControl {
 
   /// Makes the next prepare() set the time step from all contacts.
   void request() { requested_ = true; }
+  bool requested() const { return requested_; }
   /// After settings or bodies have changed.
   void update_stiffening(const State& state) { stiffening_.update(state); }
   /// Sets the time step from all contacts. Throws NumericsError if a prescribed value is above the critical one, Error
@@ -46,7 +47,7 @@ class TimeStepControl {
 
  private:
   CriticalStep::Change change_that_matters(const State& state) const;
-  CriticalStep::Instant near_contacts(const State& state, Passes& passes) const;
+  CriticalStep::Instant near_contacts(State& state, Passes& passes) const;
   double critical_step(const Demand& contacts, const State& state) const;
   /// The step that stability and impacts allow, or the prescribed one.
   double stable_step(const Demand& contacts, const State& state) const;

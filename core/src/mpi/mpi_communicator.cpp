@@ -6,6 +6,7 @@
 #include <chrono>
 #include <climits>
 #include <exception>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -18,6 +19,12 @@ namespace {
 /// Longer messages are sent in parts, as MPI counts in int.
 constexpr std::size_t most_at_once = std::size_t{1} << 30;
 constexpr int tag = 0;
+
+struct Requests final : Communicator::Exchange {
+  ~Requests() override { MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE); }
+
+  std::vector<MPI_Request> requests;
+};
 
 class MpiCommunicator final : public Communicator {
  public:
@@ -52,17 +59,17 @@ class MpiCommunicator final : public Communicator {
     MPI_Alltoall(MPI_IN_PLACE, 0, MPI_UINT64_T, by_rank.data(), 1, MPI_UINT64_T, all_);
   }
 
-  void exchange(std::span<const Message> sent, std::span<const Message> received) override {
-    requests_.clear();
+  std::unique_ptr<Exchange> begin(std::span<const Message> sent, std::span<const Message> received) override {
+    auto all = std::make_unique<Requests>();
     for (const Message& one : received)
       each_part(one, [&](std::byte* from, int size) {
-        MPI_Irecv(from, size, MPI_BYTE, static_cast<int>(one.rank), tag, all_, &requests_.emplace_back());
+        MPI_Irecv(from, size, MPI_BYTE, static_cast<int>(one.rank), tag, all_, &all->requests.emplace_back());
       });
     for (const Message& one : sent)
       each_part(one, [&](std::byte* from, int size) {
-        MPI_Isend(from, size, MPI_BYTE, static_cast<int>(one.rank), tag, all_, &requests_.emplace_back());
+        MPI_Isend(from, size, MPI_BYTE, static_cast<int>(one.rank), tag, all_, &all->requests.emplace_back());
       });
-    MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+    return all;
   }
 
   bool finish(double seconds) override {
@@ -95,13 +102,12 @@ class MpiCommunicator final : public Communicator {
     const auto part = [&](unsigned r) { return all.subspan(starts[r], starts[r + 1] - starts[r]); };
     for (unsigned r = 0; r < count(); ++r)
       if (r != rank()) sent.push_back({r, part(rank())}), received.push_back({r, part(r)});
-    exchange(sent, received);
+    begin(sent, received).reset();
   }
 
   MPI_Comm all_, ends_;
   int rank_ = 0, count_ = 1;
   std::vector<int> counts_, starts_;
-  std::vector<MPI_Request> requests_;
 };
 
 }  // namespace

@@ -152,11 +152,10 @@ void RunJson::finish(const World& world, const RunSummary& summary) {
   json_["threads"] = summary.threads;
   json_["ranks"] = summary.ranks;
   if (summary.sharing)
-    json_["sharing"] = {{"imbalance", summary.sharing->imbalance},
-                        {"neighbours", summary.sharing->neighbours},
-                        {"shared_pairs", summary.sharing->shared_pairs},
-                        {"step", traffic_facts(summary.sharing->step)},
-                        {"search", traffic_facts(summary.sharing->search)}};
+    json_["sharing"] = {
+        {"imbalance", summary.sharing->imbalance},       {"neighbours", summary.sharing->neighbours},
+        {"shared_pairs", summary.sharing->shared_pairs}, {"independent_pairs", summary.sharing->independent_pairs},
+        {"step", traffic_facts(summary.sharing->step)},  {"search", traffic_facts(summary.sharing->search)}};
   json_["time_step_s"] = summary.time_step;
   json_["critical_time_step_s"] = summary.critical_time_step;
   json_["contacts_per_body"] = summary.contacts_per_body;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace grit {
@@ -29,8 +30,14 @@ class Communicator {
   virtual void largest(std::span<double> numbers) = 0;
   /// Sends entry r to rank r, and takes in its place what that rank sends to this one.
   virtual void transpose(std::span<std::uint64_t> by_rank) = 0;
-  /// Sends some messages and receives others, of known lengths: at most one to and one from each rank.
-  virtual void exchange(std::span<const Message> sent, std::span<const Message> received) = 0;
+  /// Messages on their way. The end of its lifetime waits until those that were sent may change, and others are there.
+  class Exchange {
+   public:
+    virtual ~Exchange() = default;
+  };
+  /// Begins to send some messages and to receive others, of known lengths: at most one to and one from each rank.
+  [[nodiscard]] virtual std::unique_ptr<Exchange> begin(std::span<const Message> sent,
+                                                        std::span<const Message> received) = 0;
   /// The last call of each rank: waits for the others. False if they have not called it within so many seconds.
   virtual bool finish(double seconds) = 0;
   /// Kills the processes of all ranks, with this exit status, as this one cannot go on.

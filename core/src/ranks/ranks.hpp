@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -134,14 +135,24 @@ class Ranks {
     auto* const bytes = const_cast<std::byte*>(reinterpret_cast<const std::byte*>(list.data()));
     if (!list.empty()) messages.push_back({rank, {bytes, list.size() * sizeof(list[0])}});
   }
-  /// Messages of known lengths; see Communicator.
-  void exchange(std::span<const Communicator::Message> sent, std::span<const Communicator::Message> received) {
-    if (!several()) return;
+  /// Messages on their way; see Communicator.
+  using Exchange = std::unique_ptr<Communicator::Exchange>;
+  /// Begins to exchange messages of known lengths, between several ranks.
+  [[nodiscard]] Exchange begin(std::span<const Communicator::Message> sent,
+                               std::span<const Communicator::Message> received) {
     refuse_alone();
     const Stopwatch watch(traffic_.seconds);
     for (const Communicator::Message& one : sent)
       ++traffic_.messages, traffic_.bytes += static_cast<double>(one.bytes.size());
-    all_->exchange(sent, received);
+    return all_->begin(sent, received);
+  }
+  /// Waits for them.
+  void finish(Exchange one) {
+    const Stopwatch watch(traffic_.seconds);
+    one.reset();
+  }
+  void exchange(std::span<const Communicator::Message> sent, std::span<const Communicator::Message> received) {
+    if (several()) finish(begin(sent, received));
   }
   /// Sends a list to another rank, in pieces that it takes one after the other. An empty one is the last.
   void send_piece(unsigned to, std::span<const std::byte> piece);
