@@ -104,11 +104,16 @@ TEST_F(Mpi, AFolderOfResultsStopsAllRanks) {
 }
 
 TEST_F(Mpi, ProcessesThatItDoesNotConnectAreRefused) {
-  const Outcome alone = Program({"/bin/sh", "-c", "export SLURM_STEP_NUM_TASKS=2; " + run()}, folder_.path()).finish();
-  EXPECT_EQ(alone.status, 2);
-  EXPECT_THAT(alone.err,
-              HasSubstr("started as one of 2 processes, of which MPI connects none; use mpirun of the same"));
-  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out"));
+  const auto expect_refused = [&](const std::string& variables, const std::string& why) {
+    const Outcome alone = Program({"/bin/sh", "-c", "export " + variables + "; " + run()}, folder_.path()).finish();
+    EXPECT_EQ(alone.status, 2);
+    EXPECT_THAT(alone.err, HasSubstr(why));
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out"));
+  };
+  expect_refused("PMI_SIZE=2 PMI_RANK=0",
+                 "started as one of 2 processes, of which MPI connects none; use mpirun of the same");
+  expect_refused("SLURM_STEP_NUM_TASKS=2",
+                 "started as one of 2 processes by Slurm, which does not connect them; use srun --mpi=pmix, or mpirun");
 }
 
 TEST_F(Mpi, TakesOneDescription) {

@@ -43,6 +43,7 @@ struct SharedRun {
   explicit SharedRun(const Document& document, Communicator* ranks = nullptr) {
     const auto opened = std::make_shared<OpenedScene>(registry(), read_scene(document, *registry()));
     parts = std::make_unique<Simulation::Parts>(opened, opened->prepare(BodyState::displacement), 1, nullptr, ranks);
+    parts->progress.set([this](const Progress& now) { progress = now; }, 0);  // at each report
   }
   explicit SharedRun(const std::string& file, Communicator* ranks = nullptr) : SharedRun(of_sims(file), ranks) {}
   /// `search_every`: 0: where one is due.
@@ -60,7 +61,23 @@ struct SharedRun {
     return parts->kernel.is_first_rank() ? without_times(archive.bytes()) : Bytes();
   }
   std::unique_ptr<Simulation::Parts> parts;
+  Progress progress;
 };
+
+// Clocks differ, so that a rank reports while others do not; so does one that fails alone.
+TEST(SharedRun, EachRankReportsAlone) {
+  on_ranks(2, [](Communicator& all) {
+    SharedRun shared("column/quick.json", &all);
+    shared.steps(9);
+    EXPECT_GT(shared.progress.particle_steps_per_second, 0);
+    if (all.rank() == 0) {
+      const auto alone = shared.parts->kernel.alone();
+      RunSummary summary;
+      shared.parts->runner.fill(summary);
+      EXPECT_EQ(summary.bodies, 1500u);
+    }
+  });
+}
 
 void expect_state(SharedRun& run, const Bytes& expected) {
   const Bytes found = run.state();

@@ -35,6 +35,15 @@ unsigned processes_here() {
   return std::max({1u, number_of("OMPI_COMM_WORLD_LOCAL_SIZE"), number_of("MPI_LOCALNRANKS")});
 }
 
+/// Open MPI ends the process where Slurm has started it without PMIx, MPICH where without PMI.
+void refuse_slurm_without_pmi() {
+  const bool known = std::getenv("PMIX_NAMESPACE") != nullptr || std::getenv("PMI_RANK") != nullptr ||
+                     std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
+  if (known) return;
+  throw Error("started as one of " + std::to_string(started_processes()) +
+              " processes by Slurm, which does not connect them; use srun --mpi=pmix, or mpirun");
+}
+
 Communicator* open_mpi() {
   const auto file = library_directory() / "mpi.so";
   std::error_code error;
@@ -130,6 +139,7 @@ std::string differences(const std::map<std::string, std::string>& own,
 
 RunRanks::RunRanks() {
   if (started_processes() < 2) return;
+  refuse_slurm_without_pmi();
   all_ = open_mpi();
   // Else each would run alone, into the same folder.
   if (all_->count() == 1)

@@ -67,7 +67,9 @@ class Kernel {
   void complete_world() const { view_.complete(); }
   /// The same of contacts, on the first rank only.
   void collect_contacts() const { view_.collect_contacts(); }
-  /// Number of pairs in contact, of all ranks.
+  /// Number of bodies, of all ranks. Unlike the arrays of the world, it needs nothing from others.
+  std::size_t bodies() const { return state_.bodies.count(); }
+  /// Number of pairs in contact, of all ranks; all must call this.
   std::size_t contact_count() const;
   double body_steps() const { return stepper_.body_steps(); }
   /// All ranks must call this before sharing().

@@ -77,7 +77,7 @@ struct Met {
            std::abs(wall(kernel.world(), c.wall).pressure - c.value) <= c.within * std::max(c.value, 1e-300);
   }
   bool operator()(const DischargedCondition& c) const {
-    return kernel.state().discharged_fraction() >= c.fraction * (1 - 1e-12) || kernel.world().ids().empty();
+    return kernel.state().discharged_fraction() >= c.fraction * (1 - 1e-12) || kernel.bodies() == 0;
   }
   bool operator()(const AllCondition& c) const {
     return std::all_of(c.of.begin(), c.of.end(), [&](const auto& one) { return std::visit(*this, one.is.value()); });

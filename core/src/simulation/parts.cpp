@@ -28,7 +28,7 @@ Simulation::Parts::Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, 
                                 return Kernel(live.now(), live.components(), std::move(prepared), threads, ranks);
                               })),
       runner(opened->scene, opened->live, kernel, recorder),
-      progress(runner, kernel.world(), opened->scene.stages.size()) {
+      progress(runner, kernel, opened->scene.stages.size()) {
   placed([this] { runner.prepare(); });
 }
 

@@ -13,8 +13,8 @@ namespace grit {
 
 class ProgressReporter {
  public:
-  ProgressReporter(const StageRunner& runner, const World& world, std::size_t stages)
-      : runner_(runner), world_(world), stages_(stages) {}
+  ProgressReporter(const StageRunner& runner, const Kernel& kernel, std::size_t stages)
+      : runner_(runner), kernel_(kernel), world_(kernel.world()), stages_(stages) {}
   /// Calls `report`, at most every `interval` [s] of wall-clock time.
   void set(std::function<void(const Progress&)> report, double interval) {
     report_ = std::move(report), interval_ = interval;
@@ -37,13 +37,14 @@ class ProgressReporter {
       now.seconds_left = seconds_since(began_) * (1 - *now.fraction) / done;
     now.time = world_.time();
     now.particle_steps_per_second =
-        static_cast<double>(world_.step() - last_step_) * static_cast<double>(world_.ids().size()) / since;
+        static_cast<double>(world_.step() - last_step_) * static_cast<double>(kernel_.bodies()) / since;
     last_ = std::chrono::steady_clock::now(), last_step_ = world_.step();
     report_(now);
   }
 
  private:
   const StageRunner& runner_;
+  const Kernel& kernel_;
   const World& world_;
   std::size_t stages_;
   std::function<void(const Progress&)> report_;

@@ -27,8 +27,8 @@ void record_failure(Simulation::Parts& parts) {
     summary.message = "something that is not a std::exception";
   }
   try {
-    parts.runner.fill(summary);
     const auto alone = parts.kernel.alone();  // other ranks need not have failed
+    parts.runner.fill(summary);
     parts.recorder.finish(parts.kernel.world(), summary);
   } catch (const std::exception&) {
     // The first one is reported.

@@ -74,7 +74,7 @@ Simulation::Simulation(const Description& description, const SimulationOptions& 
 Forecast Simulation::check() {
   Parts& parts = *parts_;
   if (!parts.started) at_first_instant(parts.opened->scene.document, [&] { parts.kernel.find_forces(); });
-  return {.bodies = world().positions().size(),
+  return {.bodies = parts.kernel.bodies(),
           .contacts = parts.kernel.contact_count(),
           .time_step = world().dt(),
           .critical_time_step = parts.kernel.critical_time_step(),

@@ -347,8 +347,8 @@ void StageRunner::sample(bool all) {
     if (!observer.watches(world_.stage())) continue;
     if (all || observer.schedule().is_due()) observer.sample(i, world_, recorder_);
   }
-  if (counts_contacts() && world_.positions().size() > 0)
-    contact_sum_ += 2.0 * static_cast<double>(kernel_.contact_count()) / static_cast<double>(world_.positions().size()),
+  if (counts_contacts() && kernel_.bodies() > 0)
+    contact_sum_ += 2.0 * static_cast<double>(kernel_.contact_count()) / static_cast<double>(kernel_.bodies()),
         ++contact_samples_;
 }
 
@@ -385,7 +385,7 @@ std::string StageRunner::reached() const {
     return !group.second.stage.empty() || std::holds_alternative<StreamSource>(group.second.source.value());
   };
   if (std::ranges::any_of(scene_.description->bodies, appears_later))
-    text = std::to_string(world_.positions().size()) + " bodies, " + text;
+    text = std::to_string(kernel_.bodies()) + " bodies, " + text;
   if (const double fraction = kernel_.state().discharged_fraction(); fraction > 0)
     text += ", " + number(100 * fraction) + " % of the mass discharged";
   if (const std::string waiting = kernel_.waiting_bodies(); !waiting.empty()) text += ", " + waiting;
@@ -414,7 +414,7 @@ void StageRunner::fill(RunSummary& summary) const {
   summary.stage = world_.stage();
   summary.time = world_.time(), summary.steps = world_.step();
   summary.time_step = world_.dt(), summary.critical_time_step = kernel_.critical_time_step();
-  summary.bodies = world_.positions().size();
+  summary.bodies = kernel_.bodies();
   summary.contacts_per_body = contact_samples_ > 0 ? contact_sum_ / static_cast<double>(contact_samples_) : 0;
   summary.wall_seconds = stepping_;
   summary.particle_steps_per_second = stepping_ > 0 ? kernel_.body_steps() / stepping_ : 0;
