@@ -42,7 +42,7 @@ def expect(holds, what):
 class Runs:
     def __init__(self, place, grit, slurm):
         self.place, self.slurm = place, slurm
-        # As mpirun sets it where there are more ranks than cores: a rank that waits lets others use its core.
+        # Beside other tests: a rank that waits lets others use its core.
         slurm.environment['OMPI_MCA_mpi_yield_when_idle'] = '1'
         self.command = [grit, 'run', 'fall.json', '--no-report', '--threads', '1']
         (place / 'fall.json').write_text(json.dumps(SCENE))
