@@ -72,7 +72,8 @@ class Dense {
       const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
       std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.begin() + static_cast<std::ptrdiff_t>(last),
                 BodySum{});
-      pairs_.evaluate(chunk, {*law_, bodies_, true, &no_shift_, time_step, skins_}, sum_.data(), nullptr);
+      for (const ContactTable::Kind kind : {ContactTable::Kind::within, ContactTable::Kind::across})
+        pairs_.evaluate(kind, chunk, {*law_, bodies_, true, &no_shift_, time_step, skins_}, sum_.data(), nullptr);
     }
   }
   /// Gathers forces of contacts between chunks for their second bodies.
