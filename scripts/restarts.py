@@ -118,7 +118,7 @@ class Scene:
         self.used = set()
 
     def run(self, threads, *more, ranks=1, environment=None):
-        words = mpi.words(ranks, [self.given.grit, 'run', *more, '--threads', str(threads), '--quiet', '--no-report'])
+        words = mpi.words(ranks, [self.given.grit, 'run', *more, '--threads', str(threads), '--no-report'])
         done = subprocess.run(words, capture_output=True, text=True, check=False, env=os.environ | mpi.ENVIRONMENT | (environment or {}))
         return done.returncode, done.stderr.strip()
 
