@@ -441,7 +441,7 @@ class Scaling(unittest.TestCase):
 
     def test_a_node(self):
         # 8000 particles: 0.4 ms; 0.4 neighbours and 0.1 pairs more, so 1.08 times 1.03 as long; twelve levels of reductions of 2 us
-        # each; 3200 neighbours of 72 bytes at 5 GB/s. Nobody waits for ten messages of 2 us, as 0.6 of the pairs are independent.
+        # each; 3200 neighbours of 72 bytes at 5 GB/s. Ten messages of 2 us take no time, as 0.6 of the pairs are evaluated meanwhile.
         expected = 0.4e-3 / (0.4e-3 * 1.08 * 1.03 + 12 * 2e-6 + 3200 * 72 / 5e9)
         self.assertAlmostEqual(self.fits().efficiency(8000, 64), expected, places=12)
         self.assertEqual(self.fits().efficiency(8000, 1), 1)

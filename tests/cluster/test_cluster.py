@@ -18,8 +18,7 @@ import time
 from pathlib import Path
 
 import slurm_here
-
-SKIPPED = 77
+from verdict import SKIPPED, Failed, expect
 
 # A second each, with many checkpoints.
 SCENE = {
@@ -44,15 +43,6 @@ SWEEP = {
     'metrics': {'energy': {'type': 'maximum', 'of': 'packing/kinetic_energy'}},
 }
 RUNS = [f'runs/damping={value}/seed-1' for value in SWEEP['settings']['damping']['values']]
-
-
-class Failed(Exception):
-    pass
-
-
-def expect(holds, what):
-    if not holds:
-        raise Failed(what)
 
 
 class Sweep:

@@ -13,8 +13,8 @@ import time
 from pathlib import Path
 
 import slurm_here
+from verdict import SKIPPED, Failed, expect
 
-SKIPPED = 77
 ROOT = Path(__file__).resolve().parents[2]
 SCENE = {
     'title': 'grains that fall and roll',
@@ -28,15 +28,6 @@ SCENE = {
     'probes': {'packing': {'type': 'packing', 'every_steps': 100}},
     'output': {'checkpoint_every': '50 ms'},
 }
-
-
-class Failed(Exception):
-    pass
-
-
-def expect(holds, what):
-    if not holds:
-        raise Failed(what)
 
 
 class Runs:
