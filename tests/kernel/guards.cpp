@@ -76,7 +76,8 @@ class Travel : public testing::Test {
   /// After a step in which the first body had this velocity.
   Guard guard(const Vec3& velocity) {
     set_velocity(state_, 0, velocity);
-    passes_.chunks()[0].motion = {.largest_speed = velocity.norm(), .finite = velocity.allFinite()};
+    const Velocity own{velocity.x(), velocity.y(), velocity.z()};
+    passes_.chunks()[0].motion = {.velocities = {own, own}, .finite = velocity.allFinite()};
     passes_.find_extremes(state_.lists.furthest_here(passes_, state_.time.previous_dt), false);
     return failure([&] { bounds_.advance(state_, passes_); }).first;
   }

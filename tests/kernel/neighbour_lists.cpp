@@ -39,7 +39,7 @@ TEST_F(Lists, FastBodiesGetWiderSkins) {
 }
 
 TEST_F(Lists, AreDueOnceABodyHasUsedUpItsSkin) {
-  passes_.chunks()[0].motion.largest_speed = 0.9 * least_skin;
+  set_speed(passes_, 0.9 * least_skin);
   state_.bodies.position[0].y += 0.9 * least_skin;
   state_.lists.advance(1, 0, passes_);
   EXPECT_FALSE(due());
@@ -49,7 +49,7 @@ TEST_F(Lists, AreDueOnceABodyHasUsedUpItsSkin) {
 }
 
 TEST_F(Lists, AreNotDueWhereABodyHasComeBack) {
-  passes_.chunks()[0].motion.largest_speed = 0.9 * least_skin;
+  set_speed(passes_, 0.9 * least_skin);
   for (int i = 0; i < 5; ++i) state_.lists.advance(1, 0, passes_);
   EXPECT_FALSE(due()) << "its true distance is 0";
 }
@@ -68,7 +68,7 @@ TEST_F(Lists, AreDueAtWallsAloneOnceAWallHasUsedUpItsSkin) {
 }
 
 TEST_F(Lists, SkinsAtWallsIncludeTheWayBack) {
-  passes_.chunks()[0].motion.largest_speed = 0.4 * least_skin;
+  set_speed(passes_, 0.4 * least_skin);
   state_.bodies.position[0].y += 0.4 * least_skin;
   state_.lists.advance(1, 0, passes_);
   EXPECT_DOUBLE_EQ(state_.lists.skins().at_walls(0), least_skin);
@@ -84,7 +84,7 @@ TEST_F(Lists, AreDueOnRequest) {
 }
 
 TEST_F(Lists, AreDueOnceStrainHasUsedUpTheSkins) {
-  passes_.chunks()[0].motion.largest_speed = 0;
+  set_speed(passes_, 0);
   state_.lists.advance(1, 1.9 * least_skin, passes_);
   EXPECT_FALSE(due()) << "two bodies share it";
   state_.lists.advance(1, 0.2 * least_skin, passes_);

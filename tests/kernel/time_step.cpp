@@ -86,13 +86,64 @@ TEST_F(TimeStep, PrescribedIsComparedWithNewContactsUnlessItMayBeUnstable) {
   set();
   const double before = control_.critical();
   state_.bodies.velocity[0].w *= 4;  // one body is lighter, both have moved
-  passes_.chunks()[0].motion.largest_speed = 0.2 * radius;
+  for (const std::size_t i : {0u, 1u}) state_.bodies.position[i].y += 0.2 * radius;
+  set_speed(passes_, 0.2 * radius);
   state_.lists.advance(1, 0, passes_);
   control_.follow(control_.due(state_, passes_), state_, view_, bounds_, passes_);
   EXPECT_EQ(control_.critical(), before);
   state_.settings.time_step.allow_unstable = false;
   control_.follow(control_.due(state_, passes_), state_, view_, bounds_, passes_);
   EXPECT_LT(control_.critical(), 0.9 * before);
+}
+
+TEST_F(TimeStep, IsComparedWithContactsAtEveryEighthSearchIfItMayBeUnstable) {
+  state_.settings.time_step.value = 1e-9;
+  state_.settings.time_step.allow_unstable = true;
+  set();
+  double before = control_.critical();
+  std::vector<bool> compared;
+  for (int i = 0; i < 16; ++i) {
+    state_.bodies.velocity[0].w *= 1.1;
+    search(state_, passes_);
+    control_.search_ends(state_, view_, bounds_, passes_);
+    compared.push_back(control_.critical() < before);
+    before = control_.critical();
+  }
+  EXPECT_EQ(std::ranges::count(compared, true), 2);
+  state_.settings.time_step.allow_unstable = false;
+  control_.search_ends(state_, view_, bounds_, passes_);
+  EXPECT_LT(control_.critical(), before);
+}
+
+TEST_F(TimeStep, IsNotComparedAgainWhereBodiesHaveOnlyGoneToAndFro) {
+  set();
+  const double before = control_.critical();
+  state_.bodies.velocity[0].w *= 4;
+  const auto follow = [&](double speed) {
+    set_speed(passes_, speed);
+    state_.lists.advance(1, 0, passes_);
+    control_.follow(control_.due(state_, passes_), state_, view_, bounds_, passes_);
+    return control_.critical();
+  };
+  EXPECT_EQ(follow(0.2 * radius), before) << "they are where they were";
+  state_.bodies.position[0].y += 0.2 * radius;
+  EXPECT_LT(follow(0.2 * radius), before);
+}
+
+TEST_F(TimeStep, IsNotComparedAgainWhereBodiesHaveMovedTogether) {
+  const Vec3 together(0, 0.2 * radius, 0);
+  for (const std::size_t i : {0u, 1u}) set_velocity(state_, i, together);
+  search(state_, passes_), set();
+  const double before = control_.critical();
+  state_.bodies.velocity[0].w *= 4;
+  for (const std::size_t i : {0u, 1u}) state_.bodies.position[i].y += together.y();
+  const Velocity own{0, together.y(), 0};
+  passes_.chunks()[0].motion.velocities = {own, own};
+  passes_.chunks()[0].relative_speed = state_.lists.skins().relative_speed(0, {own, own});
+  state_.lists.advance(1, 0, passes_);
+  EXPECT_GT(state_.lists.skins().walked(0), 0.19 * radius);
+  control_.follow(control_.due(state_, passes_), state_, view_, bounds_, passes_);
+  EXPECT_EQ(control_.critical(), before);
 }
 
 TEST_F(TimeStep, IsStableWithTheRatesOfEngines) {

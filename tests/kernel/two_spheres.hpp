@@ -70,12 +70,19 @@ inline void set_velocity(State& state, std::size_t body, const Vec3& v) {
   row = {v.x(), v.y(), v.z(), row.w};
 }
 
+/// As if the bodies of the only chunk had moved along x at speeds up to this [m/s].
+inline void set_speed(Passes& passes, double speed) {
+  passes.chunks()[0].motion.velocities = {{-speed, 0, 0}, {speed, 0, 0}};
+  passes.chunks()[0].relative_speed = speed;
+}
+
 /// Updates neighbour lists and contacts.
 inline void search(State& state, Passes& passes, const Renumbering& now = {}) {
   passes.resize(state.bodies.count());
   state.lists.rebuild(state.bodies, state.cell, state.statistics, state.reaches(), state.time.dt, 0, passes);
   state.pairs.rebuild(state.bodies, state.lists.search(), state.cell.periodic(), state.settings.fields, now, {},
                       passes.ranks(), passes.team());
+  state.lists.compare_velocities(state.pairs.reached(), passes.ranks());
   state.wall_contacts.rebuild(state.bodies, state.group, state.surfaces, state.lists.skins(), state.settings.fields,
                               now, passes.ranks(), passes.team());
 }

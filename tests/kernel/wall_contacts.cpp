@@ -21,7 +21,7 @@ class MovingFloor : public testing::Test {
   void move(double sphere, double floor) {
     state_.bodies.position[0].z += sphere;
     state_.surfaces[0].pose.shift.z() += floor;
-    passes_.chunks()[0].motion.largest_speed = std::abs(sphere);
+    set_speed(passes_, std::abs(sphere));
     state_.lists.advance(1, 0, passes_), state_.lists.advance_walls(std::abs(floor));
     ASSERT_FALSE(state_.lists.may_be_due(passes_.ranks()) &&
                  state_.lists.due(state_.bodies, state_.cell, passes_.ranks()));

@@ -181,7 +181,7 @@ TEST(Energies, ClosesAroundAnEnginesSpring) {
   for (const bool clumped : {false, true})
     for (const bool strained : {false, true}) {
       const Vec3 rate = strained ? Vec3(-20, 15, 10) : Vec3::Zero();
-      const double coarse = closure_in_a_spring(2e-6, clumped, rate), fine = closure_in_a_spring(1e-6, clumped, rate);
+      const double coarse = closure_in_a_spring(1e-6, clumped, rate), fine = closure_in_a_spring(5e-7, clumped, rate);
       const std::string what = std::string(clumped ? "a clump" : "a sphere") + " in an engine's spring" +
                                (strained ? ", in a cell that strains" : "");
       verify("closure error of " + what + ", over the engine's work", fine, 0, 1e-6, 1.0);

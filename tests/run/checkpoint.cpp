@@ -519,8 +519,8 @@ TEST(Checkpoint, OfAnotherVersionOfAPartIsRefused) {
   const Description d = servo();
   const SavedState state = saved(d, 20);
   const std::size_t version = sizeof(std::uint32_t);
-  EXPECT_THAT(refusal(d, state.with(state.part("neighbour lists", 2) - version, std::uint32_t{3})),
-              HasSubstr("the saved state of \"neighbour lists\" has version 3, allowed is 2"));
+  EXPECT_THAT(refusal(d, state.with(state.part("neighbour lists", 3) - version, std::uint32_t{4})),
+              HasSubstr("the saved state of \"neighbour lists\" has version 4, allowed is 3"));
   EXPECT_THAT(refusal(d, state.with(state.part("streams") - version - 1, 'x')),
               HasSubstr("the saved state holds other parts: \"streams\" is missing, found is \"streamx\";"));
   EXPECT_THAT(refusal(d, state.with(state.part("streams") - version - 1, '\x1b')),

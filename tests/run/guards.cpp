@@ -354,7 +354,7 @@ TEST(Guards, LeftTheDomain) {
   d["domain"] = {{"low", {-2e-3, -2e-3, -2e-3}}, {"high", {6e-3, 2e-3, 2e-3}}};
   d["bodies"]["grains"]["source"]["bodies"][1]["velocity"] = {30, 0, 0};
   EXPECT_THAT(complaint(d, 1000),
-              testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: body 1 at \\(0.006.*\\) m left the domain "
+              testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: body 1 at \\(0.008.*\\) m left the domain "
                                     "through its upper x side; close the domain there with a wall, make it "
                                     "larger, or name the side in /domain/open_sides"));
   d["bodies"]["grains"]["source"]["bodies"][1]["velocity"] = {0, 0, -30};

@@ -234,7 +234,7 @@ Description blade(double velocity) {
 
 TEST(NeighbourSearch, MissesNoPairWhereAWallStartsToRotate) { expect_no_missed_pair(blade(0), 1000); }
 
-TEST(NeighbourSearch, MissesNoPairWhereAWallThatRotatesMovesOn) { expect_no_missed_pair(blade(2), 600); }
+TEST(NeighbourSearch, MissesNoPairWhereAWallThatRotatesMovesOn) { expect_no_missed_pair(blade(2), 1000); }
 
 TEST(NeighbourSearch, MissesNoPairWhereFastGrainsMeetSlowOnes) {
   auto grains = loose({9, 9, 9}, 1e-3);
@@ -256,6 +256,27 @@ TEST(NeighbourSearch, MissesNoPairOfAMixtureOfOneToAHundred) {
     grains.push_back({(large + small + gap) * out, small, -0.2 * out + Vec3(i % 3 - 1, i % 5 - 2, 0)});
   }
   expect_no_missed_pair(description_of(grains), 1200);
+}
+
+/// Grains of a swarm all have the same velocity, that of the lower swarm and its opposite.
+Description swarms(const Vec3& velocity) {
+  auto grains = loose({9, 9, 9}, 0);
+  for (Grain& g : grains) g.velocity = g.position.z() < 4.5e-3 ? velocity : Vec3(-velocity);
+  return description_of(grains);
+}
+
+TEST(NeighbourSearch, MissesNoPairOfSwarmsThatMeet) { expect_no_missed_pair(swarms({0.3, 0, 1}), 1000); }
+
+TEST(NeighbourSearch, LeavesOutPairsThatMoveTogether) {
+  Trial t(swarms({0.3, 0, -1}));
+  for (int i = 0; i < 50; ++i) t.step();
+  const Skins& skins = t.kernel().state().lists.skins();
+  ASSERT_GT(skins.chunks(), 2u);
+  double walked = 0, within = 0;
+  for (const std::size_t chunk : {std::size_t{0}, skins.chunks() - 1})
+    walked = std::max(walked, skins.walked(chunk)), within = std::max(within, skins.within(chunk));
+  EXPECT_GT(walked, 0);
+  EXPECT_LT(within, 1e-9 * walked);
 }
 
 TEST(NeighbourSearch, MissesNoPairInACellThatDeforms) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double spacing = 1e-3, dt = 2e-7;
 /// Target duration of a skin in steps, and its minimum and maximum in mean diameters.
-constexpr double steps_of_skin = 100, least_skin = 0.03, most_skin = 0.6;
+constexpr double steps_of_skin = 100, least_skin = 0.03, most_skin = 1.3;
 
 /// A block of grains at rest that just touch, and one grain that flies through it or past it with `travel` radii per
 /// step.

@@ -222,11 +222,11 @@ class ContactTable {
   };
   /// Upper bound of the approach of two bodies of a chunk, or of one of it and one of another, since the neighbour
   /// search, summed over steps [m].
-  static double closing_within(std::size_t chunk, const Skins& skins) { return 2 * skins.walked(chunk); }
+  static double closing_within(std::size_t chunk, const Skins& skins) { return 2 * skins.within(chunk); }
   double closing_across(std::size_t chunk, const Skins& skins) const {
     double furthest = 0;
-    for (const std::uint32_t other : reached_[chunk]) furthest = std::max(furthest, skins.walked(other));
-    return skins.walked(chunk) + furthest;
+    for (const std::uint32_t other : reached_[chunk]) furthest = std::max(furthest, skins.across(other));
+    return skins.across(chunk) + furthest;
   }
   double history_of(std::size_t c, std::size_t field) const {
     return state_[c / block_size * fields_.size() + field].lane[c % block_size];

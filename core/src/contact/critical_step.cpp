@@ -94,28 +94,47 @@ Demand demand_alone(const Bodies& bodies, std::size_t i, const ContactLaw& law, 
           .impact = 2 * first_contact * gives.along};
 }
 
-/// A symmetric matrix: its diagonal, then xy, xz, yz.
-using Six = Eigen::Matrix<double, 6, 1>;
-Six square_of(const Vec3& n) {
-  return (Six() << n.x() * n.x(), n.y() * n.y(), n.z() * n.z(), n.x() * n.y(), n.x() * n.z(), n.y() * n.z()).finished();
+/// A symmetric matrix: its diagonal, then xy, xz, yz; the fourth numbers are 0.
+struct Symmetric {
+  Quad diagonal{}, off{};
+  Symmetric& operator+=(const Symmetric& other) { return diagonal += other.diagonal, off += other.off, *this; }
+  friend Symmetric operator*(double factor, const Symmetric& m) { return {factor * m.diagonal, factor * m.off}; }
+  double mean() const { return (diagonal[0] + diagonal[1] + diagonal[2]) / 3; }
+};
+/// n n.
+Symmetric square_of(const Vec3& n) {
+  return {{n.x() * n.x(), n.y() * n.y(), n.z() * n.z(), 0}, {n.x() * n.y(), n.x() * n.z(), n.y() * n.z(), 0}};
 }
 
+double sum_of(const Quad& q) { return q[0] + q[1] + q[2]; }
+
+/// Sum of the squares of a symmetric matrix, less its mean on the diagonal.
+double spread_of(const Symmetric& m) {
+  const double mean = m.mean();
+  const Quad d = m.diagonal - Quad{mean, mean, mean, 0};
+  return sum_of(d * d) + 2 * sum_of(m.off * m.off);
+}
+
+constexpr double above_rounding = 1 + 1e-12;
+
+/// Upper bound of the largest eigenvalue.
+double eigenvalue_bound(const Symmetric& m) { return m.mean() + above_rounding * 2 * std::sqrt(spread_of(m) / 6); }
+
 /// Upper bound of the largest eigenvalue, at most 0.1 % of its deviation from the mean too large.
-double largest_eigenvalue(const Six& m) {
-  const double mean = m.head<3>().mean();
-  const Eigen::Array3d d = m.head<3>().array() - mean, off = m.tail<3>().array();
-  const double spread = d.square().sum() + 2 * off.square().sum();
+double largest_eigenvalue(const Symmetric& m) {
+  const double mean = m.mean(), spread = spread_of(m);
   if (!(spread > 0)) return mean;
+  const double dx = m.diagonal[0] - mean, dy = m.diagonal[1] - mean, dz = m.diagonal[2] - mean;
+  const double xy = m.off[0], xz = m.off[1], yz = m.off[2];
   // Deviations x from the mean are the roots of x³ − 3 p² x − 2 q. The largest is 2 p cos(φ/3) with cos φ = q/p³, a
   // concave function of cos(φ/2), which its tangents at both ends bound. Newton's method stays above the largest root.
   const double p = std::sqrt(spread / 6);
-  const double q =
-      0.5 * (d.prod() + 2 * off.prod() - d[0] * off[2] * off[2] - d[1] * off[1] * off[1] - d[2] * off[0] * off[0]);
+  const double q = 0.5 * (dx * dy * dz + 2 * xy * xz * yz - dx * yz * yz - dy * xz * xz - dz * xy * xy);
   const double half = std::sqrt(std::clamp(0.5 * (1 + q / (p * p * p)), 0.0, 1.0));
   double x = 2 * p * std::min(0.5 + half / std::numbers::sqrt3, (5 + 4 * half) / 9);
   // The derivative vanishes where the two largest roots are equal; the tangent is exact there.
   if (x > 1.001 * p) x -= (x * (x * x - 3 * p * p) - 2 * q) / (3 * (x * x - p * p));
-  return mean + (1 + 1e-12) * x;  // above rounding error
+  return mean + above_rounding * x;
 }
 
 /// Demand of springs [1/s²] or dashpots [1/s] on a body, summed over its contacts as tensors: along·n n + across·(1 − n
@@ -126,30 +145,34 @@ class Tensors {
     double along, across, twisting, rolling, coupling;
   };
   /// `normal` points out of the body; `square`: square_of() it.
-  void add(const Contact& one, const Vec3& normal, const Six& square) {
+  void add(const Contact& one, const Vec3& normal, const Symmetric& square) {
     line_ += (one.along - one.across) * square, across_ += one.across;
     axis_ += (one.twisting - one.rolling) * square, rolling_ += one.rolling;
-    coupling_ += one.coupling * normal;
+    coupling_ += one.coupling * Quad{normal.x(), normal.y(), normal.z(), 0};
   }
   /// Upper bound of the largest eigenvalue of the whole.
-  double largest() const {
-    return joined(across_ + largest_eigenvalue(line_), rolling_ + largest_eigenvalue(axis_), coupling_.squaredNorm());
-  }
+  double largest() const { return whole(largest_eigenvalue(line_), largest_eigenvalue(axis_)); }
+  /// One that costs less and is no lower.
+  double bound() const { return whole(eigenvalue_bound(line_), eigenvalue_bound(axis_)); }
 
  private:
-  Six line_ = Six::Zero(), axis_ = Six::Zero();
+  double whole(double line, double axis) const {
+    return joined(across_ + line, rolling_ + axis, sum_of(coupling_ * coupling_));
+  }
+
+  Symmetric line_, axis_;
+  Quad coupling_{};
   double across_ = 0, rolling_ = 0;
-  Vec3 coupling_ = Vec3::Zero();
 };
 
-/// Springs of a contact on a sphere.
-Tensors::Contact springs_on(const Stiffness& k, const Bodies& bodies, std::size_t i) {
+/// Springs of a contact on a sphere. `root`: √(1/m · 1/I) of it.
+Tensors::Contact springs_on(const Stiffness& k, const Bodies& bodies, std::size_t i, double root) {
   const double radius = bodies.position[i].w, inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
   return {.along = k.normal * inverse_mass,
           .across = k.shear * inverse_mass,
           .twisting = k.twisting * inverse_inertia,
           .rolling = (k.shear * radius * radius + k.rolling) * inverse_inertia,
-          .coupling = k.shear * radius * std::sqrt(inverse_mass * inverse_inertia)};
+          .coupling = k.shear * radius * root};
 }
 
 /// Dashpots of a contact, as each of its two bodies takes the sum of both.
@@ -187,7 +210,7 @@ void each_group_of_facets(std::size_t chunk, const CriticalStep::Instant& at, do
 /// (π / duration)² of the impact of a body on facets that it hits at once [1/s²]; at most that of their springs along
 /// one direction.
 double impact_on(std::span<const SurfaceContact> facets, const WallSurface& wall, const CriticalStep::Instant& at) {
-  Six springs = Six::Zero();
+  Symmetric springs;
   for (const SurfaceContact& contact : facets) {
     const std::uint32_t i = contact.body;
     const double stiffness =
@@ -218,6 +241,12 @@ Demand CriticalStep::find(const Instant& at, Team& team) {
   return evaluate(own, at, team);
 }
 
+void CriticalStep::forget(std::size_t bodies) {
+  demand_.assign(bodies, 0), least_.assign(bodies, 0);
+  clumps_ = {};
+  chunk_.assign(chunks_of(bodies), {});
+}
+
 void CriticalStep::check_restored(std::size_t bodies) const {
   expect_restored(demand_.size() == bodies && least_.size() == bodies && chunk_.size() == chunks_of(bodies),
                   "the critical time step is of another number of bodies");
@@ -238,13 +267,22 @@ void CriticalStep::serialize(SharedArchive& archive, const ContactTable& pairs) 
   });
 }
 
-bool CriticalStep::moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const {
+bool CriticalStep::bodies_moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const {
   const Chunk& own = chunk_[chunk];
   way *= own.patience;
-  if (skins.walked(chunk) > own.walked + way) return true;
+  const bool since_search = own.approached == 0 && own.walked == 0;
+  if ((since_search ? skins.approached(chunk) : skins.across(chunk) - own.approached) > way) return true;
+  if (!own.at_walls && !walls.has_candidates(chunk)) return false;
+  return (since_search ? skins.displaced(chunk) : skins.walked(chunk) - own.walked) > way;
+}
+
+bool CriticalStep::moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const {
+  if (bodies_moved(chunk, walls, skins, way)) return true;
+  const Chunk& own = chunk_[chunk];
   if (!own.at_walls && !walls.has_candidates(chunk)) return false;
   // Candidates that a search at walls has just found may touch a wall before it has moved as far.
-  return skins.walls_walked() > own.walls_walked + way || skins.walls_walked_at_search() > own.walls_walked;
+  return skins.walls_walked() > own.walls_walked + own.patience * way ||
+         skins.walls_walked_at_search() > own.walls_walked;
 }
 
 bool CriticalStep::pressed(std::size_t chunk, double overlap) const {
@@ -271,6 +309,14 @@ double CriticalStep::stiffness(std::size_t chunk, const Instant& at) const {
     add(contact.body, std::sqrt(bodies.position[contact.body].w * std::max(contact.overlap, 0.0)));
   });
   return *std::ranges::max_element(sums);
+}
+
+std::vector<std::size_t> CriticalStep::in_doubt(const WallContacts& walls, const Skins& skins, const Change& change,
+                                                const Ranks& ranks) const {
+  std::vector<std::size_t> found;
+  for (std::size_t chunk = ranks.first(); chunk < ranks.last(); ++chunk)
+    if (chunk_[chunk].approached == 0 && bodies_moved(chunk, walls, skins, change.way)) found.push_back(chunk);
+  return found;
 }
 
 bool CriticalStep::due(const WallContacts& walls, const Skins& skins, const Change& change, const Ranks& ranks) const {
@@ -347,21 +393,24 @@ void CriticalStep::sum(std::size_t chunk, const Instant& at, std::span<const dou
   const Bodies& bodies = at.bodies;
   Chunk& own = chunk_[chunk];
   own.at_walls = at.walls.has_candidates(chunk);
-  own.walked = at.skins.walked(chunk), own.walls_walked = at.skins.walls_walked();
+  own.approached = at.skins.across(chunk), own.walked = at.skins.walked(chunk),
+  own.walls_walked = at.skins.walls_walked();
   own.overlap = 0;
   own.near.clear();
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const bool clumps = !bodies.clumps.none();
   struct Sums {
     double springs = 0, dashpots = 0;  // of clumps, and upper bounds for spheres
+    double root = 0;                   // √(1/m · 1/I)
     Tensors sphere_springs, sphere_dashpots;
   };
   std::array<Sums, chunk_bodies> sums;
+  for (std::size_t i = first; i < last; ++i) sums[i - first].root = std::sqrt(bodies.velocity[i].w * bodies.spin[i].w);
   bool damped = false;
-  const auto add = [&](std::uint32_t i, const Stiffness& k, const Vec3& normal, const Six& square) {
+  const auto add = [&](std::uint32_t i, const Stiffness& k, const Vec3& normal, const Symmetric& square) {
     Sums& to = sums[i - first];
     to.springs += demand(k, bodies, i, normal);
-    if (bodies.clumps.clump_of(i) == no_clump) to.sphere_springs.add(springs_on(k, bodies, i), normal, square);
+    if (bodies.clumps.clump_of(i) == no_clump) to.sphere_springs.add(springs_on(k, bodies, i, to.root), normal, square);
   };
   at.pairs.each_near(chunk, bodies, at.shifts, at.skins, closings, at.near, [&](std::size_t c, double distance) {
     own.near.push_back(static_cast<std::uint32_t>(c));
@@ -369,8 +418,9 @@ void CriticalStep::sum(std::size_t chunk, const Instant& at, std::span<const dou
     const double overlap = std::max(bodies.position[a].w + bodies.position[b].w - distance, 0.0);
     own.overlap = std::max(own.overlap, overlap / std::min(bodies.position[a].w, bodies.position[b].w));
     const Stiffness k = at.law.stiffness(size_of(bodies, a, b, overlap), bodies.material[a], bodies.material[b]);
-    const Vec3 normal = at.pairs.branch(c, bodies, at.shifts).normalized();
-    const Six square = square_of(normal);
+    const Vec3 branch = at.pairs.branch(c, bodies, at.shifts);
+    const Vec3 normal = distance > 0 ? Vec3(branch / distance) : branch;
+    const Symmetric square = square_of(normal);
     const bool has_a = a >= first && a < last, has_b = b >= first && b < last;
     if (has_a) add(a, k, normal, square);
     if (has_b) add(b, k, -normal, square);
@@ -392,7 +442,7 @@ void CriticalStep::sum(std::size_t chunk, const Instant& at, std::span<const dou
     const std::uint32_t a = contact.body;
     own.overlap = std::max(own.overlap, overlap / bodies.position[a].w);
     const Stiffness k = at.law.stiffness(size_at_wall(bodies, a, overlap), bodies.material[a], wall.material);
-    const Six square = square_of(contact.normal);
+    const Symmetric square = square_of(contact.normal);
     add(a, k, contact.normal, square);
     if (k.damping_ratio <= 0 && k.shear_damping_ratio <= 0) return;
     damped = true;
@@ -423,7 +473,8 @@ void CriticalStep::sum(std::size_t chunk, const Instant& at, std::span<const dou
       demand_[i] = std::max(least_[i], sphere ? std::min(of.springs, of.sphere_springs.largest()) : of.springs);
     }
     own.demand.spring = std::max(own.demand.spring, demand_[i]);
-    if (damped) own.demand.dashpot = std::max(own.demand.dashpot, of.dashpots + of.sphere_dashpots.largest());
+    if (damped && of.dashpots + of.sphere_dashpots.bound() > own.demand.dashpot)
+      own.demand.dashpot = std::max(own.demand.dashpot, of.dashpots + of.sphere_dashpots.largest());
   }
 }
 

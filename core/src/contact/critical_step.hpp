@@ -53,6 +53,8 @@ class CriticalStep {
   };
   /// Evaluates all chunks.
   Demand find(const Instant& at, Team& team);
+  /// Instead of an evaluation after a neighbour search: as if there were no contacts.
+  void forget(std::size_t bodies);
   /// After an evaluation of the chunk's contacts. `overlap`: the deepest over the smaller radius.
   void touched(std::size_t chunk, double overlap) {
     Chunk& own = chunk_[chunk];
@@ -63,6 +65,9 @@ class CriticalStep {
     double way;      ///< displacement of a body, or of a wall with bodies near it [m]
     double overlap;  ///< deepest overlap over the smaller radius that may matter; infinite where springs do not stiffen
   };
+  /// Own chunks whose bodies have perhaps not moved as far as bounds say, and have not been evaluated since the search.
+  std::vector<std::size_t> in_doubt(const WallContacts& walls, const Skins& skins, const Change& change,
+                                    const Ranks& ranks) const;
   /// Evaluates chunks with such a change, or with new candidates at walls.
   Demand renew(const Instant& at, const Change& change, Team& team);
   /// Whether there are such own chunks.
@@ -78,6 +83,7 @@ class CriticalStep {
     Demand demand;             ///< largest of single bodies
     Demand together;           ///< largest of its pairs, and of clumps with a body in it
     bool at_walls = false;     ///< whether it had candidates at walls, whose contacts may have opened since
+    double approached = 0;     ///< Skins::across() at its last evaluation [m]
     double walked = 0;         ///< displacement bound at its last evaluation [m]
     double walls_walked = 0;   ///< the same of walls
     double overlap = 0;        ///< deepest overlap over the smaller radius
@@ -88,12 +94,14 @@ class CriticalStep {
     Demand all() const { return larger(demand, together); }
     /// Without `near`.
     void serialize(Archive& archive) {
-      archive(alone, demand, together, at_walls, walked, walls_walked, overlap, least_overlap, stiffness, patience);
+      archive(alone, demand, together, at_walls, approached, walked, walls_walked, overlap, least_overlap, stiffness,
+              patience);
     }
   };
   static constexpr double most_patience = 4;
-  /// Whether bodies or walls have moved far enough.
+  /// Whether its bodies have moved far enough, or walls near them.
   bool moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const;
+  bool bodies_moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const;
   /// Whether overlaps have grown enough to compare the stiffness of springs.
   bool pressed(std::size_t chunk, double overlap) const;
   /// The largest sum over the contacts of one body of √(r δ)/m, r the reduced radius and δ the overlap [m/kg]: Hertzian

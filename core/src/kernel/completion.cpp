@@ -6,7 +6,7 @@ namespace grit {
 
 void take_halo(State& state, Passes& passes) {
   state.halo.finish(
-      state.bodies, [&](std::size_t chunk) -> double& { return passes.chunks()[chunk].motion.largest_speed; },
+      state.bodies, [&](std::size_t chunk) -> double& { return passes.chunks()[chunk].relative_speed; },
       passes.ranks());
   state.lists.advance_near(state.halo.chunks(), passes);
 }

@@ -355,7 +355,7 @@ void Kernel::serialize(Archive& archive) {
     expect_restored(passes_.chunks().size() == chunks_of(state_.bodies.count()),
                     "computing times are of another number of bodies");
   archive(state_.statistics);
-  archive.part("neighbour lists", 2);
+  archive.part("neighbour lists", 3);
   state_.lists.serialize(shared);
   archive.part("contact history", 1);
   serialize_fields(archive);
@@ -365,7 +365,7 @@ void Kernel::serialize(Archive& archive) {
   state_.wall_contacts.serialize(shared);
   part("departures", 1, state_.departures, state_.discharged_mass);
   part("energy", 1, state_.overlap, balance_, guard_);
-  archive.part("time step", 2);
+  archive.part("time step", 3);
   stepper_.serialize(shared);
   part("streams", 1, inflow_);
   for (const auto& [name, engine] : state_.settings.engines)

@@ -43,6 +43,10 @@ class NeighbourLists {
   /// that a run is identical on every machine. With several ranks, takes bodies near own ones from the others.
   void rebuild(Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
                std::vector<double> reaches, double dt, double wall_speed, Passes& passes);
+  /// After the pairs of the search are known: `reached` as in ContactTable.
+  void compare_velocities(const std::vector<std::vector<std::uint32_t>>& reached, Ranks& ranks);
+  /// Measures how far a chunk's bodies have moved since the last rebuild, see Skins::measured().
+  void measure(std::size_t chunk, const Bodies& bodies, const DeformingCell& cell);
   /// Before candidates at walls are found again, without a rebuild: sets the skins for this. Arguments as in rebuild().
   void begin_search_at_walls(const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
                              double wall_speed);
@@ -67,10 +71,11 @@ class NeighbourLists {
   void check_restored(std::size_t bodies) const;
 
  private:
+  class Displacements;
   static constexpr std::uint64_t sort_every = 8;
   bool used_up(std::size_t chunk) const;
-  /// Takes into account how far a chunk's bodies have gone in the last step.
-  void go(std::size_t chunk, const Passes& passes);
+  /// Takes into account how far a chunk's bodies may have approached others in the last step.
+  void approach(std::size_t chunk, const Passes& passes);
   void lay_skins(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
                  double wall_speed, Passes& passes);
 
@@ -79,8 +84,8 @@ class NeighbourLists {
   Skins skins_;
   LargeArray<Row> reference_;  // positions of own bodies at the last rebuild
   Cell reference_cell_;
-  std::vector<double> reaches_;  // of the law at the last rebuild
-  double strain_travel_ = 0;
+  std::vector<double> reaches_;             // of the law at the last rebuild
+  double strain_travel_ = 0, elapsed_ = 0;  // since the last rebuild
   struct {
     double dt = 0, strained = 0;
     bool near_chunks_wait = false;

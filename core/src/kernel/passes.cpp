@@ -50,7 +50,7 @@ void Passes::find_extremes(double furthest, bool energies) {
   bool finite = true;
   for (std::size_t chunk = ranks_.first(); chunk < ranks_.last(); ++chunk) {
     const ChunkResult& own = chunks_[chunk];
-    overlap = std::max(overlap, own.overlap), speed = std::max(speed, own.motion.largest_speed);
+    overlap = std::max(overlap, own.overlap), speed = std::max(speed, own.motion.velocities.largest_speed());
     finite = finite && own.motion.finite;
   }
   std::array<double, 4> all{overlap, speed, furthest, finite ? 0.0 : 1.0};

@@ -24,6 +24,7 @@ struct alignas(64) ChunkResult {
   double overlap = 0;  ///< largest, over a radius
   Losses losses;
   Motion motion, clumps;
+  double relative_speed = 0;  ///< see Skins::relative_speed()
   bool moved = false;
   std::array<double, step_phases> seconds{};
 

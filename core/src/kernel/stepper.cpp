@@ -141,6 +141,7 @@ void Stepper::rebuild() {
                        passes_);
   state_.pairs.rebuild(bodies, state_.lists.search(), cell.periodic(), state_.settings.fields, now,
                        state_.lists.surroundings().boxes(), ranks, passes_.team());
+  state_.lists.compare_velocities(state_.pairs.reached(), ranks);
   state_.halo.build(state_.pairs, ranks);
   readiness_.build(state_.pairs.reached());
   state_.wall_contacts.rebuild(bodies, state_.group, state_.surfaces, state_.lists.skins(), state_.settings.fields, now,
@@ -148,7 +149,7 @@ void Stepper::rebuild() {
   bounds_.rebuild(state_, passes_);
   arrivals_.clear();
   view_.invalidate();  // engines may have read bodies in their former order
-  time_step_.set(state_, view_, bounds_, passes_);
+  time_step_.search_ends(state_, view_, bounds_, passes_);
   sharing_.search_ends(ranks, state_.halo, bodies.count());
 }
 
@@ -226,7 +227,9 @@ void Stepper::evaluate_across(std::size_t chunk, bool again, BodySum* sum, Laps&
 }
 
 void Stepper::move(std::size_t chunk, const BodySum* sum, const MotionStep& step) {
-  passes_.chunks()[chunk].motion = move_bodies(chunk, state_.bodies, sum, step);
+  ChunkResult& own = passes_.chunks()[chunk];
+  own.motion = move_bodies(chunk, state_.bodies, sum, step);
+  own.relative_speed = state_.lists.skins().relative_speed(chunk, own.motion.velocities);
 }
 
 void Stepper::sum_forces(bool again) {
@@ -448,7 +451,7 @@ void Stepper::bodies_moved() {
   if (!passes_.ranks().several()) return;
   state_.complete.bodies = false;
   state_.halo.begin(
-      state_.bodies, [this](std::size_t chunk) -> double& { return passes_.chunks()[chunk].motion.largest_speed; },
+      state_.bodies, [this](std::size_t chunk) -> double& { return passes_.chunks()[chunk].relative_speed; },
       passes_.ranks());
 }
 

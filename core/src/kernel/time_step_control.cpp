@@ -38,6 +38,9 @@ Demand demand_of_engines(const State& state, const World& world) {
   return all;
 }
 
+/// Whether nothing depends on the critical step. It is then evaluated only when bodies are sorted, for reports.
+bool unchecked(const State& state) { return state.settings.time_step.value && state.settings.time_step.allow_unstable; }
+
 /// The time step in which no surface moves too far. While bodies accelerate it is shortened only now and then.
 double step_of_displacements(const State& state, const DisplacementBounds& bounds) {
   const Settings& settings = state.settings;
@@ -68,11 +71,21 @@ CriticalStep::Instant TimeStepControl::near_contacts(State& state, Passes& passe
 }
 
 void TimeStepControl::set(State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
-  engines_ = demand_of_engines(state, world);
   stiffening_.expect(state, bounds, passes);
   // Without bodies the step is that of the groups that will appear.
   const Demand found = critical_.find(near_contacts(state, passes), passes.team());
-  const Demand contacts = state.bodies.count() > 0 ? found : state.settings.of_groups;
+  set_for(state.bodies.count() > 0 ? found : state.settings.of_groups, state, world, bounds, passes);
+}
+
+void TimeStepControl::search_ends(State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
+  if (requested_ || !unchecked(state) || state.lists.sorts()) return set(state, world, bounds, passes);
+  critical_.forget(state.bodies.count());
+  set_for(contacts_, state, world, bounds, passes);
+}
+
+void TimeStepControl::set_for(const Demand& contacts, State& state, const World& world, DisplacementBounds& bounds,
+                              Passes& passes) {
+  engines_ = demand_of_engines(state, world);
   const double stable = stable_step(contacts, state);
   bounds.foresee(state, std::isfinite(stable) ? stable : state.time.dt, passes);
   choose(contacts, state, bounds);
@@ -85,11 +98,12 @@ CriticalStep::Change TimeStepControl::change_that_matters(const State& state) co
   return {renew_distance * state.statistics.mean_diameter, stiffening_.least_overlap()};
 }
 
-bool TimeStepControl::due(const State& state, const Passes& passes) const {
-  // Nothing depends on contacts then; the critical step is evaluated at rebuilds only, for reports.
-  const bool unchecked = state.settings.time_step.value && state.settings.time_step.allow_unstable;
-  return !requested_ && !unchecked &&
-         critical_.due(state.wall_contacts, state.lists.skins(), change_that_matters(state), passes.ranks());
+bool TimeStepControl::due(State& state, const Passes& passes) const {
+  if (requested_ || unchecked(state)) return false;
+  const CriticalStep::Change change = change_that_matters(state);
+  for (const std::size_t chunk : critical_.in_doubt(state.wall_contacts, state.lists.skins(), change, passes.ranks()))
+    state.lists.measure(chunk, state.bodies, state.cell);
+  return critical_.due(state.wall_contacts, state.lists.skins(), change, passes.ranks());
 }
 
 void TimeStepControl::follow(bool due, State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {

@@ -21,9 +21,11 @@ class TimeStepControl {
   /// Sets the time step from all contacts. Throws NumericsError if a prescribed value is above the critical one, Error
   /// if nothing limits it.
   void set(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
+  /// After a neighbour search: the same, except that contacts are only evaluated where something depends on them.
+  void search_ends(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
   /// Whether own bodies have moved or been compressed so far that contacts are new or stiffer. A prescribed step that
   /// may be unstable needs no updates.
-  bool due(const State& state, const Passes& passes) const;
+  bool due(State& state, const Passes& passes) const;
   /// Before an evaluation without a rebuild: sets the time step if requested; otherwise updates it, for such contacts
   /// if it is `due` on any rank, and for speeds.
   void follow(bool due, State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
@@ -46,6 +48,8 @@ class TimeStepControl {
   }
 
  private:
+  /// Sets the time step for these contacts, and the present speeds and engines.
+  void set_for(const Demand& contacts, State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
   CriticalStep::Change change_that_matters(const State& state) const;
   CriticalStep::Instant near_contacts(State& state, Passes& passes) const;
   double critical_step(const Demand& contacts, const State& state) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -26,7 +27,8 @@ Quad taken(const Quad& force, const Quad& push, const Quad& velocity) {
   return power > 0 ? force : power < 0 ? -force : none;
 }
 
-Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
+/// Bound of no body's velocity.
+constexpr double unbounded = std::numeric_limits<double>::max();
 
 /// Accumulates rotations of a body, if requested.
 void turn_on(Vec3* turned, std::size_t body, const Quad& spin, const Quad& drift) {
@@ -89,8 +91,12 @@ template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
   const double damping_of_all = same.damping, scaled_radius_of_all = same.scaled_radius;
   const Quad drift{step.drift, step.drift, step.drift, 0}, ones{1, 1, 1, 0};
   constexpr bool flows = energies == EnergyTerms::with_flow, falls = flows || energies == EnergyTerms::with_weight;
-  Quad fastest{}, poison{}, damped_power{}, damped_turning{}, momentum{}, flow_power{}, flow_work{};
-  double fastest_carried = 0, prescribed = 0;
+  Quad low{unbounded, unbounded, unbounded, 0}, high = -low;
+  const auto bound = [&](const Quad& relative) {
+    low = relative < low ? relative : low, high = relative > high ? relative : high;
+  };
+  Quad poison{}, damped_power{}, damped_turning{}, momentum{}, flow_power{}, flow_work{};
+  double prescribed = 0;
   // Local copies of the pointers: for the compiler, stores might alias them.
   Row *const position = bodies.position.data(), *const velocity = bodies.velocity.data(),
              *const spin = bodies.spin.data();
@@ -101,7 +107,7 @@ template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
         const Quad v = load(velocity[i]), before = load(position[i]) - v * drift;
         Quad against = v - rate * (before - centre);
         if constexpr (Shears) against -= sheared(before - centre);
-        fastest_carried = std::max(fastest_carried, product(against, against));
+        bound(against);
         poison += v * 0.0 + load(spin[i]) * 0.0;
         turn_on(turned, i, load(spin[i]), drift);
         continue;
@@ -117,8 +123,7 @@ template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
         if constexpr (falls) momentum += v * own.weight * weighing_share(x[3], own.scaled_radius) / inverse_mass;
         Quad carried = rate * (x - centre);
         if constexpr (Shears) carried += sheared(x - centre);
-        const Quad speed = absolute(v - carried);
-        fastest = speed > fastest ? speed : fastest;
+        bound(v - carried);
         turn_on(turned, i, w, drift);
         v[3] = inverse_mass, w[3] = inverse_inertia;
         store(x + v * drift, position[i]), store(v, velocity[i]), store(w, spin[i]);
@@ -157,15 +162,13 @@ template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
     if constexpr (flows && Shears) flow_work += 0.5 * mass * step.flowed * sheared(before) * (before + v);
     store(x, position[i]), store(v, velocity[i]), store(w, spin[i]);
     turn_on(turned, i, w, drift);
-    const Quad speed = absolute(v - flow);
-    fastest = speed > fastest ? speed : fastest;
+    bound(v - flow);
     poison += v * 0.0 + w * 0.0;
   }
-  const double fastest_free = std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]);
   const Quad kick = Groups ? ones : same.kick, turn_kick = Groups ? ones : same.turn_kick,
              weight = Groups ? ones : same.weight;
   const double damping = Groups ? 1 : same.damping;
-  return {std::max(fastest_free, std::sqrt(fastest_carried)),
+  return {first < last ? VelocityRange{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}} : VelocityRange{},
           poison[0] == 0 && poison[1] == 0 && poison[2] == 0,
           damping * (product(damped_power, kick) + product(damped_turning, turn_kick)),
           step.drift * product(momentum, weight),

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "bodies/bodies.hpp"
+#include "bodies/velocity_range.hpp"
 #include "contact/search.hpp"
 #include "grit/contact/batch.hpp"
 #include "grit/engine.hpp"
@@ -36,7 +37,7 @@ struct MotionStep {
 
 /// Summary of the motion of a chunk's bodies.
 struct Motion {
-  double largest_speed = 0;  ///< upper bound of speeds relative to the mean flow [m/s]
+  VelocityRange velocities;  ///< relative to the mean flow
   bool finite = true;        ///< no velocity is inf or NaN
   double damped = 0;         ///< energy dissipated by local damping [J]
   double fallen = 0;         ///< work of gravity [J]
