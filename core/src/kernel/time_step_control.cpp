@@ -38,7 +38,7 @@ Demand demand_of_engines(const State& state, const World& world) {
   return all;
 }
 
-/// Whether nothing depends on the critical step. It is then evaluated only when bodies are sorted, for reports.
+/// Whether nothing depends on the critical step. It is then evaluated at every eighth search only, for reports.
 bool unchecked(const State& state) { return state.settings.time_step.value && state.settings.time_step.allow_unstable; }
 
 /// The time step in which no surface moves too far. While bodies accelerate it is shortened only now and then.
