@@ -2,9 +2,9 @@
 # Finds errors of memory, undefined behaviour and data races: builds and runs the whole test suite with sanitizers, or a
 # short run, its continuation and its report under valgrind. Needs scripts/install-deps.sh --sanitizers.
 #   sanitize.sh [--markdown] address|thread [ARGUMENTS OF CTEST…]     e.g. sanitize.sh thread -R resume
-# The whole suite takes some hours on two cores. If it was ended before, and nothing has been built since, the same command
-# goes on with the tests that have not passed yet.
 #   sanitize.sh [--markdown] valgrind
+# The whole suite takes some hours on two cores. If it was stopped, and nothing has been built since, the same command goes
+# on with the tests that have not passed yet.
 # --markdown also writes a row into docs/evidence/reliability.md.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -36,11 +36,12 @@ case ${1-} in
     trap 'echo $((before + SECONDS)) > "$spent"' EXIT
     echo "$command" > "$log"
     all=$(ctest --preset "$preset" "$@" -N | sed -nE 's/^ *Test +#([0-9]+): .*/\1/p')
-    left=$(grep -vxFf "$passed" <<< "$all" | paste -sd ,)
+    left=$(grep -vxFf "$passed" <<< "$all" | paste -sd , || true)
     echo "sanitize: $(wc -l <<< "$all") tests, $(sort -u "$passed" | wc -l) have passed before"
     echo "0,0,1,$left" > "$built/left"
     status=0
     ctest --preset "$preset" -j"$(nproc)" "$@" -I "$built/left" | tee -a "$log" || status=$?
+    grep -q "tests passed," "$log" || exit "$status" # stopped
     # 97% tests passed, 3 tests failed out of 100
     failed=$(sed -nE 's/.*tests passed, ([0-9]+) tests failed out of.*/\1/p' "$log")
     SECONDS=$((before + SECONDS)) before=0

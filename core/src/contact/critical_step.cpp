@@ -270,7 +270,7 @@ void CriticalStep::serialize(SharedArchive& archive, const ContactTable& pairs) 
 bool CriticalStep::bodies_moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const {
   const Chunk& own = chunk_[chunk];
   way *= own.patience;
-  const bool since_search = own.approached == 0 && own.walked == 0;
+  const bool since_search = own.evaluated_at_search();
   if ((since_search ? skins.approached(chunk) : skins.across(chunk) - own.approached) > way) return true;
   if (!own.at_walls && !walls.has_candidates(chunk)) return false;
   return (since_search ? skins.displaced(chunk) : skins.walked(chunk) - own.walked) > way;
@@ -315,7 +315,7 @@ std::vector<std::size_t> CriticalStep::in_doubt(const WallContacts& walls, const
                                                 const Ranks& ranks) const {
   std::vector<std::size_t> found;
   for (std::size_t chunk = ranks.first(); chunk < ranks.last(); ++chunk)
-    if (chunk_[chunk].approached == 0 && bodies_moved(chunk, walls, skins, change.way)) found.push_back(chunk);
+    if (chunk_[chunk].evaluated_at_search() && bodies_moved(chunk, walls, skins, change.way)) found.push_back(chunk);
   return found;
 }
 

@@ -92,6 +92,7 @@ class CriticalStep {
     double patience = 1;       ///< displacement after which it is due, over that of the chunk with the shortest step
     std::vector<std::uint32_t> near;  ///< candidates that count as contacts
     Demand all() const { return larger(demand, together); }
+    bool evaluated_at_search() const { return approached == 0 && walked == 0; }
     /// Without `near`.
     void serialize(Archive& archive) {
       archive(alone, demand, together, at_walls, approached, walked, walls_walked, overlap, least_overlap, stiffness,
