@@ -1,4 +1,4 @@
-// Where walls move, only chunks with bodies near them are evaluated again.
+// Which chunks are evaluated again where walls move.
 #include "contact/critical_step.hpp"
 
 #include <gtest/gtest.h>
@@ -42,6 +42,8 @@ class CriticalStepAtWalls : public testing::Test {
             .ranks = passes_.ranks()};
   }
   double find() { return critical_.find(now(), passes_.team()).spring; }
+  /// The demand of a body above, with a contact with a body like itself.
+  double alone() const { return demand_without_contacts(spheres({Vec3::Zero()}).bodies, *state_.settings.law).spring; }
   double renew() { return critical_.renew(now(), change, passes_.team()).spring; }
   bool due() { return critical_.due(state_.wall_contacts, state_.lists.skins(), change, passes_.ranks()); }
   /// The floor moves far away, and candidates are found there.
@@ -68,6 +70,39 @@ TEST_F(CriticalStepAtWalls, IsRenewedOnlyWhereBodiesAreNearThem) {
   lighten(0);
   state_.lists.advance_walls(1.1 * way);
   EXPECT_GT(renew(), 1.5 * before);
+}
+
+TEST_F(CriticalStepAtWalls, IsRenewedLaterWhereOtherChunksLimitTheStep) {
+  const double own = find();
+  lighten(chunk_bodies);
+  const double shortest = find();
+  // Of one body of a pair a new contact demands half of what a pair of such bodies does.
+  const double fresh = 0.5 * alone(), ways = 1 + (shortest - own) / (own / 8 + fresh);
+  EXPECT_GT(ways, 2);
+  EXPECT_LT(ways, 7);
+  state_.lists.advance_walls(0.99 * ways * way);
+  EXPECT_FALSE(due());
+  state_.lists.advance_walls(0.02 * ways * way);
+  EXPECT_TRUE(due());
+}
+
+TEST_F(CriticalStepAtWalls, IsRenewedWhereOtherChunksLimitTheStepNoLonger) {
+  const auto place = [&](double apart) {
+    for (std::size_t i = 0; i < 7; ++i) state_.bodies.position[chunk_bodies + i].x = apart * static_cast<double>(i);
+  };
+  place(2 * radius);
+  search(state_, passes_);
+  const double before = find();
+  state_.lists.advance_walls(1.1 * way);
+  EXPECT_FALSE(due());
+  place(2.5 * radius);
+  passes_.chunks()[1].relative_speed = 10 * way;  // m/s, for a second
+  state_.lists.advance(1, 0, passes_);
+  EXPECT_TRUE(due());
+  EXPECT_LT(renew(), 0.9 * before);
+  EXPECT_TRUE(due()) << "the chunk at the floor, though nothing has moved since";
+  renew();
+  EXPECT_FALSE(due());
 }
 
 TEST_F(CriticalStepAtWalls, IsNotDueWhereNoBodyIsNearThem) {

@@ -84,7 +84,7 @@ TEST(CriticalStep, LagsInAColumnThatCollapsesByLessThanTheSafety) {
   double most = 0;
   int samples = 0, late = 0;
   for (; t.world().time() < 0.1; ++samples) {
-    t.step(20);
+    t.step(7);
     std::vector<Grain> now;
     for (std::size_t i = 0; i < t.world().ids().size(); ++i)
       now.push_back({xyz(t.world().positions()[i]), t.world().positions()[i].w});

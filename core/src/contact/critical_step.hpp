@@ -27,7 +27,8 @@ Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law);
 ///
 /// Contacts form and open where bodies move. A chunk is evaluated again, independently of others, when its bodies have
 /// moved far enough, or walls with bodies of it near them: the further, the longer its own critical step is than that
-/// of all. Where stiffness grows with overlap, also when the springs of one of its bodies have stiffened as far.
+/// of all, and the less a new contact demands. Where stiffness grows with overlap, also when the springs of one of its
+/// bodies have stiffened as far.
 ///
 /// Contacts with several facets of a mesh may begin in one step, as in a ring of facets. If they stop a body sooner
 /// than one like itself would, all within `ahead` count, and their impact limits the step.
@@ -62,7 +63,7 @@ class CriticalStep {
   }
   /// Changes since its last evaluation that make a chunk due.
   struct Change {
-    double way;      ///< displacement of a body, or of a wall with bodies near it [m]
+    double way;      ///< displacement of a body, or of a wall with bodies near it, where nothing may be stiffer [m]
     double overlap;  ///< deepest overlap over the smaller radius that may matter; infinite where springs do not stiffen
   };
   /// Own chunks whose bodies have perhaps not moved as far as bounds say, and have not been evaluated since the search.
@@ -79,27 +80,30 @@ class CriticalStep {
 
  private:
   struct Chunk {
-    Demand alone;              ///< largest of bodies with one contact, with a body like themselves
-    Demand demand;             ///< largest of single bodies
-    Demand together;           ///< largest of its pairs, and of clumps with a body in it
-    bool at_walls = false;     ///< whether it had candidates at walls, whose contacts may have opened since
-    double approached = 0;     ///< Skins::across() at its last evaluation [m]
-    double walked = 0;         ///< displacement bound at its last evaluation [m]
-    double walls_walked = 0;   ///< the same of walls
-    double overlap = 0;        ///< deepest overlap over the smaller radius
-    double least_overlap = 0;  ///< least value of it since its last evaluation or comparison of stiffness()
-    double stiffness = 0;      ///< stiffness() at its last evaluation
-    double patience = 1;       ///< displacement after which it is due, over that of the chunk with the shortest step
+    Demand alone;                     ///< largest of bodies with one contact, with a body like themselves
+    Demand fresh;                     ///< largest of a new contact on one body
+    Demand demand;                    ///< largest of single bodies
+    Demand together;                  ///< largest of its pairs, and of clumps with a body in it
+    bool at_walls = false;            ///< whether it had candidates at walls, whose contacts may have opened since
+    double approached = 0;            ///< Skins::across() at its last evaluation [m]
+    double walked = 0;                ///< displacement bound at its last evaluation [m]
+    double walls_walked = 0;          ///< the same of walls
+    double overlap = 0;               ///< deepest overlap over the smaller radius
+    double least_overlap = 0;         ///< least value of it since its last evaluation or comparison of stiffness()
+    double stiffness = 0;             ///< stiffness() at its last evaluation
     std::vector<std::uint32_t> near;  ///< candidates that count as contacts
     Demand all() const { return larger(demand, together); }
     bool evaluated_at_search() const { return approached == 0 && walked == 0; }
     /// Without `near`.
     void serialize(Archive& archive) {
-      archive(alone, demand, together, at_walls, approached, walked, walls_walked, overlap, least_overlap, stiffness,
-              patience);
+      archive(alone, fresh, demand, together, at_walls, approached, walked, walls_walked, overlap, least_overlap,
+              stiffness);
     }
   };
-  static constexpr double most_patience = 4;
+  /// The factor by which demands of a chunk's contacts may grow before its critical step is the shortest.
+  double slack(const Chunk& chunk) const;
+  /// The displacement after which a chunk is due, over that of the chunk with the shortest step.
+  double patience(const Chunk& chunk) const;
   /// Whether its bodies have moved far enough, or walls near them.
   bool moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const;
   bool bodies_moved(std::size_t chunk, const WallContacts& walls, const Skins& skins, double way) const;
@@ -124,6 +128,7 @@ class CriticalStep {
     std::vector<double> dashpot;   // by clump
   } clumps_;
   std::vector<Chunk> chunk_;
+  double shortest_ = 0;  // critical step of all chunks at the last evaluation [s]
 };
 
 }  // namespace grit

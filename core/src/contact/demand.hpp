@@ -21,6 +21,8 @@ struct Demand {
   double critical_time_step() const { return 4 / (dashpot + std::sqrt(dashpot * dashpot + 4 * spring)); }
   /// Step [s] at which the shortest impact takes `steps` steps. Infinite if there is none.
   double step_of_impact(double steps) const { return std::numbers::pi / (steps * std::sqrt(impact)); }
+  /// The fraction of what a critical step of `dt` [s] allows.
+  double share(double dt) const { return 0.5 * dt * dashpot + 0.25 * dt * dt * spring; }
   bool more_than(const Demand& other) const { return spring > other.spring || dashpot > other.dashpot; }
 };
 

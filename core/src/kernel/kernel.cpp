@@ -365,7 +365,7 @@ void Kernel::serialize(Archive& archive) {
   state_.wall_contacts.serialize(shared);
   part("departures", 1, state_.departures, state_.discharged_mass);
   part("energy", 1, state_.overlap, balance_, guard_);
-  archive.part("time step", 3);
+  archive.part("time step", 4);
   stepper_.serialize(shared);
   part("streams", 1, inflow_);
   for (const auto& [name, engine] : state_.settings.engines)

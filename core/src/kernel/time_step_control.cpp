@@ -12,7 +12,7 @@ namespace {
 
 // Displacement after which contacts are evaluated again for the time step, and distance below which pairs count as
 // contacts, both over the mean diameter. Two bodies may approach by more than that between evaluations;
-// docs/definitions.md explains how much the time step lags and the cost of avoiding it.
+// docs/method.md explains how much the time step lags and the cost of avoiding it.
 constexpr double renew_distance = 0.06, contact_distance = 0.015;
 // The time step is raised only by this factor or more, so that it does not follow every small change.
 constexpr double raise_when = 1.1;
