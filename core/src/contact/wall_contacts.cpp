@@ -195,29 +195,27 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
                               std::span<const WallSurface> walls, double dt, bool again, BodySum* sum, Losses* losses) {
   static thread_local Workspace work;
   Chunk& chunk = chunks_[c];
-  chunk.load.assign(walls.size(), {});
+  chunk.load.resize(walls.size());
   if (chunk.candidate.empty()) {
     chunk.contact.clear(), chunk.crossed.clear(), chunk.state.clear(), chunk.row.clear();
     return 0;
   }
-  work.before.clear();
-  for (std::size_t i = 0; i < chunk.contact.size(); ++i) {
-    const WallContact& t = chunk.contact[i];
-    work.before.push_back(
-        {t.normal, t.normal_before, t.body, t.wall, t.feature, t.material, t.overlap, chunk.crossed[i] != 0});
-  }
+  // The buffers change places: copying contacts takes longer than finding them.
+  work.before.swap(chunk.contact), work.crossed_before.swap(chunk.crossed);
   chunk.contact.clear();
   const bool at_a_distance = law.has_reach();
   for (std::uint32_t w = 0; w < walls.size(); ++w) {
     const WallSurface& wall = walls[w];
-    work.spheres.clear(), work.found.clear();
-    for (std::uint32_t n = chunk.candidate_start[w]; n < chunk.candidate_start[w + 1]; ++n) {
-      Sphere& sphere = work.spheres.emplace_back();
+    const std::span<const std::uint32_t> candidates(chunk.candidate.data() + chunk.candidate_start[w],
+                                                    chunk.candidate.data() + chunk.candidate_start[w + 1]);
+    if (candidates.empty()) continue;
+    chunk.load[w] = {};
+    work.spheres.resize(candidates.size()), work.found.clear();
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
       // All components at once: reading a vector directly after writing its components one by one stalls.
-      std::memcpy(sphere.centre.data(), &bodies.position[chunk.candidate[n]], sizeof(Row));
-      sphere.body = chunk.candidate[n];
+      std::memcpy(work.spheres[n].centre.data(), &bodies.position[candidates[n]], sizeof(Row));
+      work.spheres[n].body = candidates[n];
     }
-    if (work.spheres.empty()) continue;
     const auto reach = [&](std::uint32_t body) {
       return law.reach(at_wall(bodies, body, 0), bodies.material[body], wall.material);
     };
@@ -360,7 +358,7 @@ void WallContacts::carry_along(Chunk& chunk, const Bodies& bodies, std::span<con
 
 void WallContacts::carry_histories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt, bool again) const {
   // In nearly all steps contacts persist.
-  const auto same = [](const WallContact& now, const Before& before) { return key(now) == key(before); };
+  const auto same = [](const WallContact& now, const WallContact& before) { return key(now) == key(before); };
   chunk.crossed.assign(chunk.contact.size(), 0);
   const auto cross = [&](std::uint32_t i) {
     const WallContact& t = chunk.contact[i];
@@ -368,9 +366,9 @@ void WallContacts::carry_histories(Chunk& chunk, Workspace& work, const Bodies& 
     chunk.crossed[i] = 1;
   };
   const auto continue_from = [&](std::uint32_t from, std::uint32_t to) {
-    const Before& before = work.before[from];
+    const WallContact& before = work.before[from];
     chunk.contact[to].normal_before = again ? before.normal_before : before.normal;
-    if (again && before.crossed) cross(to);
+    if (again && work.crossed_before[from] != 0) cross(to);
   };
   work.gone.clear();
   if (std::ranges::equal(chunk.contact, work.before, same)) {
@@ -403,7 +401,7 @@ void WallContacts::carry_histories(Chunk& chunk, Workspace& work, const Bodies& 
     auto best = gone.end();
     double nearest = goes_on;
     for (auto g = gone.begin(); g != gone.end(); ++g) {
-      const Before& left = work.before[*g];
+      const WallContact& left = work.before[*g];
       const double cosine = left.normal.dot(t.normal);
       if (left.body == t.body && left.material == t.material && cosine > nearest) best = g, nearest = cosine;
     }
@@ -418,7 +416,7 @@ void WallContacts::carry_histories(Chunk& chunk, Workspace& work, const Bodies& 
 void WallContacts::part(const Workspace& work, const ContactLaw& law, const Bodies& bodies, Losses& losses) const {
   const std::size_t fields = fields_.size();
   for (const std::uint32_t g : work.gone) {
-    const Before& left = work.before[g];
+    const WallContact& left = work.before[g];
     const ElasticEnergy held = law.energy(at_wall(bodies, left.body, left.overlap), bodies.material[left.body],
                                           left.material, std::span(work.state_before).subspan(g * fields, fields));
     losses.friction += held.shear, losses.rolling += held.rolling;
@@ -456,10 +454,10 @@ void WallContacts::loads(std::span<WallLoad> loads, Ranks& ranks) const {
   for (std::size_t c = ranks.first(); c < ranks.last(); ++c) {
     const Chunk& chunk = chunks_[c];
     for (std::size_t w = 0; w < chunk.load.size(); ++w) {
-      WallLoad one = chunk.load[w];
-      one.near = chunk.candidate_start[w + 1] - chunk.candidate_start[w];
-      if (!ranks.several()) add(w, one);
-      else if (one.near > 0) parts.push_back({w, one});
+      const std::uint32_t near = chunk.candidate_start[w + 1] - chunk.candidate_start[w];
+      if (near == 0) continue;
+      if (ranks.several()) parts.push_back({w, chunk.load[w]}), parts.back().load.near = near;
+      else add(w, chunk.load[w]), loads[w].near += near;
     }
   }
   if (ranks.several())

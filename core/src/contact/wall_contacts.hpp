@@ -179,18 +179,12 @@ class WallContacts {
   static bool acts(const WallContact& contact, const ContactRow& row) {
     return contact.overlap >= 0 || row.force.w != 0;
   }
-  /// A contact of the last step, or of the last evaluation of this one.
-  struct Before {
-    Vec3 normal, normal_before;
-    std::uint32_t body, wall, feature, material;
-    double overlap;
-    bool crossed;
-  };
   /// Buffers of evaluate(). One for all chunks of a thread, so that it stays in the cache.
   struct Workspace {
     std::vector<Sphere> spheres;
     std::vector<SurfaceContact> found;
-    std::vector<Before> before;
+    std::vector<WallContact> before;           // contacts of the last step, or of the last evaluation of this one
+    std::vector<std::uint8_t> crossed_before;  // by these contacts
     std::vector<double> state_before;
     std::vector<std::uint32_t> same_body_before, fresh, gone;  // indices of contacts
     std::vector<bool> hide;
