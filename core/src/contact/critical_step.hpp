@@ -63,7 +63,7 @@ class CriticalStep {
   }
   /// Changes since its last evaluation that make a chunk due.
   struct Change {
-    double way;      ///< displacement of a body, or of a wall with bodies near it, where nothing may be stiffer [m]
+    double way;      ///< displacement of bodies of the chunk with the shortest step, or of walls near them [m]
     double overlap;  ///< deepest overlap over the smaller radius that may matter; infinite where springs do not stiffen
   };
   /// Own chunks whose bodies have perhaps not moved as far as bounds say, and have not been evaluated since the search.
