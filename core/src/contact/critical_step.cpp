@@ -231,8 +231,8 @@ Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law) {
 // A chunk is evaluated again when the springs of one of its bodies have stiffened by this factor.
 constexpr double growth_due = 1.1;
 // Over the displacement after which the chunk with the shortest step is evaluated again, the demands of a chunk's
-// contacts grow by this fraction, and one body gets a new contact. Over 1.1 to 1.7 times as much, the demands of 99 of
-// 100 chunks of bench/scenes/drum-hertz.json grew by less than 0.03, and all by less than 0.1.
+// contacts are taken to grow by this fraction, and one body to get a new contact. Over 1.1 to 1.7 times as much, those
+// of 99 of 100 chunks of bench/scenes/drum-hertz.json grew by less than 0.03, and none by more than 0.1.
 constexpr double usual_growth = 1.0 / 8;
 constexpr double most_slack = 4, most_patience = 8;
 
