@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of files from strangers (tests/fuzz) with libFuzzer and sanitizers, one after the other, and prints
+# Fuzzes the readers of files from strangers (tests/fuzz) with libFuzzer and sanitizers, one on each core, and prints
 # a table of targets, runs and findings. Findings stay in build-fuzz/findings/TARGET. Exit status 1 if there are any.
 #   fuzz.sh [--markdown] [SECONDS [TARGET…]]     SECONDS for each target, default 60; default: all targets
 # --markdown also writes the rows into docs/evidence/reliability.md.
@@ -37,9 +37,9 @@ fuzz() {
   for ((round = 0; round < 50 && left > 0; ++round)); do
     began=$SECONDS
     "$folder/fuzz/fuzz_$target" -max_total_time="$left" -max_len=65536 -timeout=30 -rss_limit_mb=4096 -print_final_stats=1 \
-      -artifact_prefix="$folder/findings/$target/" "$folder/corpus/$target" "${corpora[@]}" > "$folder/last.log" 2>&1 || true
-    cat "$folder/last.log" >> "$folder/findings/$target.log"
-    runs=$((runs + $(sed -n 's/^stat::number_of_executed_units: *//p' "$folder/last.log" | tail -n 1 | grep . || echo 0)))
+      -artifact_prefix="$folder/findings/$target/" "$folder/corpus/$target" "${corpora[@]}" > "$folder/last.$target.log" 2>&1 || true
+    cat "$folder/last.$target.log" >> "$folder/findings/$target.log"
+    runs=$((runs + $(sed -n 's/^stat::number_of_executed_units: *//p' "$folder/last.$target.log" | tail -n 1 | grep . || echo 0)))
     ended=$SECONDS
     left=$((left - (ended > began ? ended - began : 1)))
   done
@@ -56,14 +56,26 @@ verified() {
   echo "$count"
 }
 
-total=0
-printf '%-14s %12s %9s\n' target runs findings
-for target in "${targets[@]}"; do
-  [[ -x $folder/fuzz/fuzz_$target ]] || { echo "fuzz: there is no target '$target'" >&2; exit 1; }
+# A row for one target. Status 1 if it has findings.
+watched() {
+  local target=$1 runs findings
   runs=$(fuzz "$target")
   findings=$(verified "$target")
-  total=$((total + findings))
   printf '%-14s %12s %9s\n' "$target" "$runs" "$findings"
-  [[ -z $page ]] || scripts/tables.py "$page" fuzzing "$target" "$runs" "$findings" "$(awk "BEGIN { printf \"%.2f\", $seconds / 3600 }")"
+  [[ -z $page ]] || flock "$folder" scripts/tables.py "$page" fuzzing "$target" "$runs" "$findings" "$(awk "BEGIN { printf \"%.2f\", $seconds / 3600 }")"
+  [[ $findings == 0 ]]
+}
+
+for target in "${targets[@]}"; do
+  [[ -x $folder/fuzz/fuzz_$target ]] || { echo "fuzz: there is no target '$target'" >&2; exit 1; }
 done
-[[ $total == 0 ]] || { echo "fuzz: findings are in $folder/findings; make a test of each" >&2; exit 1; }
+trap 'kill $(jobs -p) 2> /dev/null || true' EXIT
+printf '%-14s %12s %9s\n' target runs findings
+cores=$(nproc) started=() status=0
+for target in "${targets[@]}"; do
+  [[ $(jobs -r | wc -l) -lt $cores ]] || wait -n || true
+  watched "$target" &
+  started+=($!)
+done
+for job in "${started[@]}"; do wait "$job" || status=1; done
+[[ $status == 0 ]] || { echo "fuzz: a target failed, or findings are in $folder/findings: make a test of each" >&2; exit 1; }
