@@ -496,6 +496,7 @@ TEST(Checkpoint, ThatWasAlteredIsRefused) {
   const std::size_t bodies = state.part("bodies", 2);
   ASSERT_GT(state.read<std::uint64_t>(bodies), 100u);
   expect(state.with(bodies + 10, unknown), "the place, the size or the motion of a body is not a number");
+  expect(state.with(bodies + 10, 1e306), "a body is far outside of the periodic cell");
   expect(state.with(bodies, std::uint64_t{1} << 60), "the saved state is too short");
   // Contacts: the number of bodies; by chunk the blocks of pairs that touch and of all, whether they have images and a
   // reach, and the first bodies of pairs.
@@ -513,6 +514,10 @@ TEST(Checkpoint, ThatWasAlteredIsRefused) {
   expect(state.with(near + 16 + 4 * places, nowhere), "a body that is not there is near a wall");
   // Periodic sides, after two corners of three numbers.
   expect(state.with(state.part("cell") + 48, std::uint8_t{2}), "other axes of the cell are periodic");
+  // After these and two rates of three numbers, the offsets of images.
+  const SavedState skewed = saved(sheared_cell(), 20);
+  EXPECT_THAT(refusal(sheared_cell(), skewed.with(skewed.part("cell") + 99, 1e306)),
+              HasSubstr("the images of the cell are further away than a search leaves them"));
 }
 
 TEST(Checkpoint, OfAnotherVersionOfAPartIsRefused) {

@@ -141,6 +141,11 @@ void DeformingCell::serialize(Archive& archive) {
   expect_restored(cell_.strain_rate.allFinite() && cell_.shear_rate.allFinite() && cell_.tilt.allFinite() &&
                       tilt_before_.allFinite(),
                   "the deformation of the cell is not a number");
+  // Images across y and z are moved back at each neighbour search, before their offset is a period.
+  const Vec3 along(lengths()[0], lengths()[0], lengths()[1]);
+  for (int k = 0; k < 3; ++k)
+    expect_restored(cell_.tilt[k] == 0 || std::abs(cell_.tilt[k]) <= 2 * along[k],
+                    "the images of the cell are further away than a search leaves them");
 }
 
 }  // namespace grit

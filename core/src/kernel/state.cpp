@@ -33,6 +33,12 @@ MotionStep State::next_motion(bool energies) const {
 void State::check_restored() const {
   const std::size_t count = bodies.count();
   grit::check_restored(bodies, materials.size(), settings.groups);
+  // Bodies re-enter a periodic cell at each neighbour search, long before they are a period away from it.
+  const Vec3 periods = cell.periods();
+  for (int k = 0; k < 3; ++k)
+    for (std::size_t i = 0; periods[k] > 0 && i < count; ++i)
+      expect_restored(std::abs(xyz(bodies.position[i])[k] - cell.centre()[k]) <= 1.5 * periods[k],
+                      "a body is far outside of the periodic cell");
   statistics.check_restored(bodies);
   lists.check_restored(count);
   expect_restored(pairs.bodies() == count, "contacts are of another number of bodies");

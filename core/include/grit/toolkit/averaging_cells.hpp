@@ -311,7 +311,7 @@ class Averaging {
   void check_cells(const World& world, const Region& box, const std::string& key = "cell_step") const {
     constexpr double most = AveragingCells::most_parts;
     const double diameter = world.mean_diameter();
-    if (!(diameter > 0) || !(box.volume() > 0) || !std::isfinite(box.volume())) return;
+    if (!(diameter > 0) || !(box.volume() > 0) || !(box.high - box.low).allFinite()) return;
     const auto parts = [&](double step) {
       return AveragingCells::most_parts_of(box, size_of_cells(world), Vec3::Constant(step * diameter));
     };
