@@ -536,6 +536,28 @@ TEST_F(Runs, ReportThreadsThatCannotStart) {
   EXPECT_FALSE(exists("results"));
 }
 
+TEST_F(Runs, StepOnADevice) {
+  const auto outcome = grit({"run", "two.json", "--device", "emulated"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(run_json("results/two").at("engine"), "emulated device");
+  EXPECT_EQ(grit({"run", "two.json", "--out", "cpu"}).status, 0);
+  EXPECT_EQ(run_json("cpu").at("engine"), "cpu");
+  const auto unknown = grit({"run", "two.json", "--device", "fpga"});
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("--device takes none or emulated, not \"fpga\""));
+}
+
+TEST_F(Runs, OnADeviceAreRefusedForAnyStage) {
+  auto scene = json::parse(two_grains);
+  scene["stages"].push_back(scene["stages"][0]);
+  scene["stages"][1]["name"] = "growth", scene["stages"][1]["growth"] = {{"rate", 0.1}};
+  folder.write("grow.json", scene.dump());
+  const auto outcome = grit({"check", "grow.json", "--device", "emulated"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("/stages: devices cannot let bodies grow yet; run it without --device"));
+  EXPECT_EQ(grit({"check", "grow.json"}).status, 0);
+}
+
 TEST_F(Runs, AnInterruptedOneKeepsTheOthersFromBeginning) {
   folder.write("other.json", two_grains);
   Program program(grit_with({"run", "two.json", "other.json", "--set", "/stages/0/until/value=1000000000", "--set",

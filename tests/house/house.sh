@@ -5,7 +5,7 @@
 set -euo pipefail
 
 # A room may include itself and those before it.
-rooms=(format storage plugins description input threads ranks bodies contact motion domain kernel run simulation output study calibration report lint app)
+rooms=(format storage plugins description input threads ranks bodies contact motion domain device kernel run simulation output study calibration report lint app)
 
 # sources FOLDER…: the C++ files below those that exist.
 sources() {

@@ -15,6 +15,7 @@
 
 #include "grit/body_kind.hpp"
 #include "grit/contact/contact_law.hpp"
+#include "grit/contact/device_pairs.hpp"
 #include "grit/engine.hpp"
 #include "grit/error.hpp"
 #include "grit/geometry.hpp"
@@ -179,6 +180,8 @@ std::vector<Case> all_cases() {
               WallBatch batch{};
               law.evaluate_walls(batch);
             })
+      .call("device()", [](ContactLaw& law) { law.device(); })
+      .call("evaluate_device_pairs()", [](ContactLaw& law) { law.evaluate_device_pairs(DevicePairs{}, nullptr, 0, 0); })
       .call("stiffness()", [](ContactLaw& law) { law.stiffness(size, 0, 0); })
       .call("has_reach()", [](ContactLaw& law) { law.has_reach(); })
       .call("reach()", [](ContactLaw& law) { law.reach(size, 0, 0); })

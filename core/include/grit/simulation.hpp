@@ -24,9 +24,17 @@ namespace grit {
 
 class Engine;
 
+/// What steps the bodies.
+enum class DeviceKind {
+  none,      ///< this process
+  emulated,  ///< the kernels of a GPU in loops on the CPU: to test them, not to be fast
+};
+
 /// How a simulation is opened.
 struct SimulationOptions {
   unsigned threads = 1;           ///< results are identical for any number
+  /// Throws DescriptionError for what of the description a device cannot do.
+  DeviceKind device = DeviceKind::none;
   std::vector<std::string> sets;  ///< changes of the description, "/pointer=value", in order; file of problems: "sets"
   /// Folders searched for plugins, before those of GRIT_PLUGIN_PATH and those next to the library. FileError is thrown
   /// for one that has none.

@@ -21,6 +21,7 @@
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "input/scene.hpp"
+#include "kernel/device_obstacles.hpp"
 #include "kernel/kernel.hpp"
 #include "lint/doubtful_targets.hpp"
 #include "lint/endless_fall.hpp"
@@ -95,6 +96,23 @@ void print_frames(const SceneDescription& description, const Kernel& kernel, con
   check_disk(frames, least_frame_bytes(bodies, kernel.state().bodies.state), here);
 }
 
+/// Throws PlacedError for what of any stage a device cannot do.
+void check_stages_on_device(const Scene& scene, const State& state) {
+  LiveScene live(scene);
+  for (std::size_t stage = 0; stage < scene.stages.size(); ++stage) {
+    live.go_to(stage, 0);
+    std::vector<std::string> walls;
+    for (const auto& [name, wall] : live.now().walls) walls.push_back(name);
+    const Settings settings =
+        settings_of(live.now(), live.components(), live.now().stages[stage].name, state.materials);
+    auto found = device_obstacles(settings, walls, state.bodies.state);
+    if (found.empty()) continue;
+    PlacedError error(std::move(found));
+    error.begun(stage + 1);
+    throw error;
+  }
+}
+
 void check_one(const std::string& file, const Scene& scene, const Options& options, const Registry& registry) {
   const SceneDescription& description = *scene.description;
   check_references(description.output);
@@ -112,6 +130,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     note = prepared.note;
     return Kernel(description, components, std::move(prepared), threads);
   }));
+  if (options.device() != DeviceKind::none) check_stages_on_device(scene, kernel.state());
   at_first_instant(scene.document, [&] { kernel.find_forces(); });
   std::vector<ProbeGroup> probes;
   std::vector<FieldGroup> fields;
@@ -252,6 +271,7 @@ void check_options(Options& options) {
   options.add_threads("threads assumed in the estimate of the run time");
   options.add()("ranks", boost::program_options::value<std::string>()->default_value("1")->value_name("N"),
                 "processes assumed in the estimates, each with so many threads: see mpirun -n N grit run");
+  options.add_device();
   options.add_set();
 }
 

@@ -64,6 +64,19 @@ void Options::add_threads(const char* doc) {
       "threads", po::value<std::string>()->default_value(std::to_string(all), "all cores")->value_name("N"), doc);
 }
 
+void Options::add_device() {
+  visible_.add_options()(
+      "device", po::value<std::string>()->default_value("none")->value_name("KIND"),
+      "what steps the bodies: none (this process) or emulated (the kernels of a GPU in loops on the CPU, for tests)");
+}
+
+DeviceKind Options::device() const {
+  const auto kind = get<std::string>("device");
+  if (kind == "none") return DeviceKind::none;
+  if (kind == "emulated") return DeviceKind::emulated;
+  throw UsageError("--device takes none or emulated, not \"" + kind + '"');
+}
+
 unsigned Options::number(const char* name) const {
   const auto text = get<std::string>(name);
   unsigned number = 0;

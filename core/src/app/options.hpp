@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/command.hpp"
+#include "grit/simulation.hpp"
 #include "plugins/registry.hpp"
 
 namespace grit {
@@ -20,6 +21,8 @@ class Options {
   void add_set();
   /// --threads; threads() checks the value.
   void add_threads(const char* doc);
+  /// --device; device() checks the value.
+  void add_device();
   boost::program_options::options_description_easy_init add() { return visible_.add_options(); }
   /// The name of the value that an option takes; "" if it takes none.
   static std::string value_name(const boost::program_options::option_description& option);
@@ -43,6 +46,8 @@ class Options {
   /// Value of --threads or --jobs. Throws UsageError if it is not from 1 to 1024.
   unsigned number(const char* name) const;
   unsigned threads() const { return number("threads"); }
+  /// Value of --device. Throws UsageError for others than those allowed.
+  DeviceKind device() const;
   /// Reports --threads beyond those of the machine.
   void warn_of_threads() const;
   /// The single positional word of the command. Throws UsageError.

@@ -140,7 +140,8 @@ RunSummary run_or_advise(Simulation& simulation, const RunJob& job) try {
   throw FileError(out_of_memory() + "\n  then " + way_on(job));
 }
 
-RunFacts facts_of(const RunJob& job, unsigned threads, unsigned ranks, const std::vector<std::string>& command_line) {
+RunFacts facts_of(const RunJob& job, unsigned threads, unsigned ranks, DeviceKind device,
+                  const std::vector<std::string>& command_line) {
   const OpenedScene& opened = *job.opened;
   const SceneDescription& description = *opened.scene.description;
   return {.description = resolved(description),
@@ -148,6 +149,7 @@ RunFacts facts_of(const RunJob& job, unsigned threads, unsigned ranks, const std
           .seed = description.seed,
           .threads = threads,
           .ranks = ranks,
+          .engine = device == DeviceKind::emulated ? "emulated device" : "cpu",
           .clumps = clumps_of(opened.live.components()),
           .source = job.source,
           .commands = {command_line}};
@@ -252,6 +254,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   const Scene& scene = job.opened->scene;
   const SceneDescription& description = *scene.description;
   const unsigned threads = ranks.threads(options);
+  const DeviceKind device = options.device();
   const bool quiet = options.has("quiet");
   const auto say = [&](const std::string& line) {
     if (!quiet) std::cerr << line << std::endl;
@@ -260,7 +263,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   for (const auto& [pointer, why] : late_densities(scene)) warn_of_idle(scene.document, pointer, why);
   Description references = check_references(description.output);
   say(description.title.empty() ? job.file : job.file + ": " + description.title);
-  RunFacts facts = facts_of(job, threads, ranks.count(), command_line);
+  RunFacts facts = facts_of(job, threads, ranks.count(), device, command_line);
   facts.references = std::move(references);
   std::optional<LastCheckpoint> last;
   if (job.existing == Existing::resume) {
@@ -293,8 +296,8 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     say(line);
   });
 
-  Simulation simulation(
-      std::make_unique<Simulation::Parts>(job.opened, std::move(prepared), threads, &curves, ranks.communicator()));
+  Simulation simulation(std::make_unique<Simulation::Parts>(job.opened, std::move(prepared), threads, &curves,
+                                                            ranks.communicator(), device));
   simulation.interrupt_when([&] { return interrupted.load(); });
   simulation.parts().checkpoints.set(
       [&](const StateToSave& now) { simulation.done() ? results.final_state(now) : results.checkpoint(now); },
@@ -345,6 +348,7 @@ void run_options(Options& options) {
       "watch", "serve the page of the run while it runs, for browsers on this machine")(
       "port", po::value<std::string>()->value_name("N"), "port of --watch; default: a free one");
   options.add_threads("number of threads; the results have the same bits for any number");
+  options.add_device();
   options.add_set();
 }
 
@@ -353,6 +357,8 @@ namespace {
 ExitStatus run_jobs(const Options& options, RunRanks& ranks) {
   if (options.words().empty()) throw UsageError("no description given; see 'grit run --help'");
   options.warn_of_threads();
+  if (options.device() != DeviceKind::none && ranks.several())
+    throw UsageError("found --device with " + std::to_string(ranks.count()) + " ranks; a device is for one process");
   if (options.has("resume") && options.has("overwrite"))
     throw UsageError("--resume continues results, --overwrite replaces them; give one of them");
   if (ranks.several() && options.words().size() > 1)

@@ -167,6 +167,20 @@ class ContactTable {
       if (b_[c] != bodies_) use(c);
   }
   bool contacts(std::size_t c) const { return (touching_[c / block_size] >> (c % block_size) & 1) != 0; }
+  /// Whether a pair in contact, or within the reach of the law, overlaps or has a force.
+  bool acts(std::size_t c) const { return acting_.empty() || (acting_[c / block_size] >> (c % block_size) & 1) != 0; }
+  /// What another engine has found of a candidate.
+  void set_contact(std::size_t c, bool touches, bool acts) {
+    const auto set = [c](std::uint8_t& mask, bool on) {
+      const auto bit = static_cast<std::uint8_t>(1u << (c % block_size));
+      mask = static_cast<std::uint8_t>(on ? mask | bit : mask & ~bit);
+    };
+    set(touching_[c / block_size], touches);
+    if (!acting_.empty()) set(acting_[c / block_size], acts);
+  }
+  void set_history(std::size_t c, std::size_t field, double number) {
+    state_[c / block_size * fields_.size() + field].lane[c % block_size] = number;
+  }
   std::uint32_t a(std::size_t c) const { return a_[c]; }
   std::uint32_t b(std::size_t c) const { return b_[c]; }
   std::uint8_t image(std::size_t c) const { return image_.empty() ? 0 : image_[c]; }

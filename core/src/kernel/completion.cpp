@@ -13,6 +13,11 @@ void take_halo(State& state, Passes& passes) {
 
 void complete_bodies(State& state, Passes& passes) {
   if (state.complete.bodies) return;
+  if (state.device) {
+    state.device->fetch(state.bodies);
+    state.complete.bodies = true;
+    return;
+  }
   take_halo(state, passes);
   Bodies& bodies = state.bodies;
   const auto complete = [&](auto&... arrays) {
@@ -25,6 +30,10 @@ void complete_bodies(State& state, Passes& passes) {
     find_groups(state);
   }
   state.complete.bodies = state.complete.identities = true;
+}
+
+void bring_bodies(State& state, Passes& passes) {
+  if (state.device) complete_bodies(state, passes);
 }
 
 void complete_sums(State& state, Passes& passes) {

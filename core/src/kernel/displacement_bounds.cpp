@@ -91,7 +91,10 @@ void DisplacementBounds::advance(State& state, Passes& passes) {
   state.lists.advance(dt, strained, passes);
   const auto [overlap, fastest, gone, finite] = passes.extremes();
   rate_ = state.bodies.count() > 0 ? fastest / state.statistics.smallest_radius : 0;
-  if (!finite || dt * rate_ > harmless(state)) rate_ = rate_of_bodies(state, passes);
+  if (!finite || dt * rate_ > harmless(state)) {
+    bring_bodies(state, passes);
+    rate_ = rate_of_bodies(state, passes);
+  }
   const double rate_of_bodies_alone = rate_;
   advance_walls(state, gone, passes);
   if (!finite || dt * rate_of_bodies_alone > state.settings.guards.travel) {

@@ -10,12 +10,14 @@
 #include "bodies/kinetic_energy.hpp"
 #include "bodies/make_bodies.hpp"
 #include "description/placed_error.hpp"
+#include "device/emulated_device.hpp"
 #include "format/names.hpp"
 #include "grit/error.hpp"
 #include "kernel/arrivals.hpp"
 #include "kernel/body_groups.hpp"
 #include "kernel/cell_servo.hpp"
 #include "kernel/completion.hpp"
+#include "kernel/device_obstacles.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/scaled_masses.hpp"
@@ -135,6 +137,7 @@ void Kernel::change(const SceneDescription& scene, const Components& components)
 
 void Kernel::apply(const SceneDescription& scene, const Components& components) {
   complete_bodies(state_, passes_);
+  stepper_.bring_home();
   const Settings before = state_.settings;
   balance_.book_elastic([&] { take_settings(scene, components); });
   const auto kinetic = [this] {
@@ -253,6 +256,12 @@ void Kernel::let_in() {
   guard_.entered(energy.kinetic + energy.potential);
 }
 
+void Kernel::step_on(DeviceKind device) {
+  if (device == DeviceKind::none) return;
+  refuse_obstacles(state_);
+  state_.device = std::make_unique<DeviceMirror>(std::make_unique<EmulatedDevice>(passes_.team()));
+}
+
 void Kernel::find_forces() {
   let_in();
   stepper_.find_forces();
@@ -306,9 +315,11 @@ Model Kernel::model() const {
 }
 
 void Kernel::save(Archive& archive) {
+  std::optional<ContactTable> evaluated = stepper_.recall();
   archive.part("walls", 1);
   archive(state_.walls);
   serialize(archive);
+  if (evaluated) stepper_.take_back(std::move(*evaluated));
 }
 
 void Kernel::restore(const SceneDescription& scene, const Components& components, Archive& archive) {

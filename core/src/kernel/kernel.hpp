@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "grit/simulation.hpp"
 #include "kernel/energy_balance.hpp"
 #include "kernel/energy_guard.hpp"
 #include "kernel/inflow.hpp"
@@ -36,6 +37,8 @@ class Kernel {
   /// Changes settings within a stage.
   void change(const SceneDescription& scene, const Components& components);
 
+  /// From the next step on a device steps the bodies. Throws PlacedError for what it cannot do yet. One rank only.
+  void step_on(DeviceKind device);
   void find_forces();
   void advance() { stepper_.advance(); }
   void step_on();

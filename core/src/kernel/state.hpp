@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "contact/contact_table.hpp"
 #include "contact/halo.hpp"
 #include "contact/wall_contacts.hpp"
+#include "device/mirror.hpp"
 #include "domain/deforming_cell.hpp"
 #include "domain/population_statistics.hpp"
 #include "kernel/neighbour_lists.hpp"
@@ -47,6 +49,7 @@ struct State {
     bool identities = true;  ///< which body has which index; if not, `bodies` is false, too
     bool sums = true;
   } complete;
+  std::unique_ptr<DeviceMirror> device;  ///< that steps the bodies; null: this process does
 
   /// Input of the contact pass; `again` if this instant has been evaluated before.
   ContactTable::Instant instant(bool again) const {

@@ -14,6 +14,7 @@
 #include "kernel/arrivals.hpp"
 #include "kernel/body_groups.hpp"
 #include "kernel/completion.hpp"
+#include "kernel/device_obstacles.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/periodic_walls.hpp"
@@ -27,6 +28,7 @@ void Stepper::settings_changed() {
   loads_.resize(state_.walls.size());
   bounds_.reset_walls(state_.walls.size());
   bounds_.grown(0);
+  if (state_.device) state_.device->request();
   time_step_.request();
   time_step_.update_stiffening(state_);
 }
@@ -151,6 +153,7 @@ void Stepper::rebuild() {
   view_.invalidate();  // engines may have read bodies in their former order
   time_step_.search_ends(state_, view_, bounds_, passes_);
   sharing_.search_ends(ranks, state_.halo, bodies.count());
+  if (state_.device) state_.device->request();
 }
 
 void Stepper::collect_sharing() {
@@ -174,18 +177,22 @@ void Stepper::follow_bodies() {
     const bool at_walls = state_.lists.due_at_walls();
     const auto [may_search, may_renew] =
         ranks.any(std::array{state_.lists.may_be_due(ranks), !at_walls && time_step_.due(state_, passes_)});
+    if (may_search) bring_bodies(state_, passes_);
     search = may_search && state_.lists.due(state_.bodies, state_.cell, ranks), renew = may_renew;
     if (!search && at_walls) {
       search_at_walls();
       renew = ranks.any(time_step_.due(state_, passes_));
     }
   }
-  if (search || renew || time_step_.requested()) take_halo(state_, passes_);
+  if (search || renew || time_step_.requested()) {
+    take_halo(state_, passes_);
+    bring_home();
+  }
   if (search) rebuild();
   else time_step_.follow(renew, state_, view_, bounds_, passes_);
 }
 
-bool Stepper::prepare() {
+void Stepper::prepare() {
   view_.invalidate();
   state_.cell.update_images(state_.time.previous_dt);
   update_surfaces();
@@ -193,12 +200,10 @@ bool Stepper::prepare() {
     const PhaseWatch watch = passes_.watch(StepPhase::search);
     follow_bodies();
   }
-  // Contact history advances once per step, even if forces are evaluated again at the start of a stage.
-  const bool again = forces_step_ == state_.time.step;
-  forces_step_ = state_.time.step;
   state_.complete.sums = !passes_.ranks().several();
-  return again;
 }
+
+bool Stepper::evaluated_before() { return std::exchange(forces_step_, state_.time.step) == state_.time.step; }
 
 void Stepper::evaluate_within(std::size_t chunk, bool again, BodySum* sum, Laps& laps) {
   const ChunkRange range(chunk, state_.bodies.count());
@@ -287,15 +292,16 @@ void Stepper::find_extremes() {
   passes_.find_extremes(state_.lists.furthest_here(passes_, state_.time.dt), balance_.is_kept());
 }
 
-void Stepper::take_loads() {
+void Stepper::take_loads(bool for_time_step) {
   find_extremes();
+  if (passes_.extremes().overlap > state_.settings.guards.overlap) bring_home();  // for the report
   if (!state_.surfaces.empty()) {
     state_.wall_contacts.loads(loads_, passes_.ranks());
     state_.walls.clear_forces();
     for (std::size_t w = 0; w < loads_.size(); ++w) state_.walls.add(w, loads_[w]);
   }
   state_.overlap = passes_.extremes().overlap;
-  for (std::size_t chunk = passes_.ranks().first(); chunk < passes_.ranks().last(); ++chunk)
+  for (std::size_t chunk = passes_.ranks().first(); for_time_step && chunk < passes_.ranks().last(); ++chunk)
     time_step_.touched(chunk, passes_.chunks()[chunk].overlap);
   balance_.add_losses();
   check_overlap(state_, view_);
@@ -303,10 +309,13 @@ void Stepper::take_loads() {
 
 void Stepper::find_forces() {
   const bool may_stiffen = time_step_.may_stiffen(state_, bounds_);
-  sum_forces(prepare());
+  bring_home();
+  prepare();
+  send_to_device();  // before histories advance here
+  sum_forces(evaluated_before());
   add_forces_of_engines();
   balance_.find_crossing();
-  take_loads();
+  take_loads(!state_.device || may_stiffen);  // the step of bodies on a device follows from what it finds itself
   time_step_.react(may_stiffen, state_, view_, bounds_, passes_);
   if (guard_.due(state_.time.step)) guard_.check(state_, balance_);
 }
@@ -366,6 +375,7 @@ void Stepper::drive_cell() {
 }
 
 void Stepper::advance() {
+  if (state_.device) return step_on_device();
   MotionStep step = state_.next_motion(balance_.is_kept());
   balance_.before_motion(step);
   if (CellServo::due(state_)) {
@@ -401,7 +411,9 @@ void Stepper::step_on() {
     advance();
     return;
   }
-  const bool again = prepare();
+  prepare();
+  if (state_.device) return step_on_device();
+  const bool again = evaluated_before();
   const MotionStep step = state_.next_motion(balance_.is_kept());
   readiness_.restart();
   const auto gather_and_move = [&](std::size_t chunk, BodySum* sum) {
@@ -444,7 +456,56 @@ void Stepper::step_on() {
     passes_.team().each(late_.size(), [&](std::size_t k) { gather_and_move(late_[k], state_.sum.data()); });
   }
   bodies_moved();
-  and_show_forces([this] { take_loads(), end_step(); });
+  and_show_forces([this] { take_loads(true), end_step(); });
+}
+
+void Stepper::bring_home() {
+  if (!device_is_ahead_) return;
+  complete_bodies(state_, passes_);
+  state_.device->fetch(state_.pairs);
+  forces_step_ = never;
+  device_is_ahead_ = false;
+}
+
+std::optional<ContactTable> Stepper::recall() {
+  if (!state_.device || state_.device->requested()) return {};
+  bring_home();
+  if (forces_step_ != state_.time.step || state_.device->advanced()) return {};
+  ContactTable evaluated = state_.pairs;
+  state_.device->fetch(state_.pairs);
+  forces_step_ = never;
+  return evaluated;
+}
+
+void Stepper::take_back(ContactTable evaluated) {
+  state_.pairs = std::move(evaluated);
+  forces_step_ = state_.time.step;
+}
+
+void Stepper::send_to_device() {
+  if (!state_.device || !state_.device->requested()) return;
+  refuse_obstacles(state_);
+  state_.device->take(state_.bodies, state_.pairs, state_.settings.law, state_.statistics.one_material,
+                      forces_step_ == state_.time.step);
+}
+
+void Stepper::step_on_device() {
+  send_to_device();
+  {
+    const PhaseWatch watch = passes_.watch(StepPhase::contacts);
+    const auto chunks = state_.device->step(state_.cell.images(), state_.time.previous_dt, state_.next_motion(false));
+    for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
+      const DeviceChunk& found = chunks[chunk];
+      ChunkResult& own = passes_.chunks()[chunk];
+      own.overlap = found.deepest;
+      own.motion = {.velocities = {std::to_array(found.low), std::to_array(found.high)}, .finite = found.poison == 0};
+      own.relative_speed = state_.lists.skins().relative_speed(chunk, own.motion.velocities);
+    }
+  }
+  device_is_ahead_ = true, forces_step_ = never;
+  state_.complete.bodies = false;
+  view_.invalidate();
+  and_show_forces([this] { take_loads(true), end_step(); });
 }
 
 void Stepper::bodies_moved() {
@@ -456,6 +517,7 @@ void Stepper::bodies_moved() {
 }
 
 void Stepper::show_forces() {
+  bring_home();
   state_.added_force.clear(), state_.added_moment.clear();
   if (passes_.extremes().finite) {
     update_surfaces();

@@ -1,6 +1,7 @@
 // One step: neighbours, forces, motion.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,13 @@ class Stepper {
   void step_on();
   /// Forces at the present positions, after a guard tripped.
   void show_forces();
+  /// Brings what a device has of bodies and contacts, if it has moved since.
+  void bring_home();
+  /// Before saving: makes bodies and contacts those of the device again, if there is one. Returns the contacts that this
+  /// process has evaluated at this instant, if it has.
+  std::optional<ContactTable> recall();
+  /// Makes these contacts, of recall(), the present ones again.
+  void take_back(ContactTable evaluated);
 
   /// After a change of settings or bodies: recomputes the time step and values of material pairs.
   void settings_changed();
@@ -49,8 +57,11 @@ class Stepper {
   void restored();
 
  private:
-  /// Operations before contacts. Returns whether this instant has been evaluated before.
-  bool prepare();
+  /// Operations before contacts.
+  void prepare();
+  /// Whether contacts have been evaluated at this instant before. Contact histories advance once per step, even if
+  /// forces are evaluated again at the start of a stage.
+  bool evaluated_before();
   /// Searches neighbours or renews the time step, where bodies have moved far enough.
   void follow_bodies();
   void rebuild();
@@ -78,9 +89,13 @@ class Stepper {
   void check_finite(const ActingEngine& one, std::span<const Row> force, std::span<const Row> moment) const;
   void add_forces_of_engines();
   void find_extremes();
-  /// Collects the results of chunks for walls and guards.
-  void take_loads();
+  /// Collects the results of chunks for walls and guards; `for_time_step`: and for the time step.
+  void take_loads(bool for_time_step);
   bool can_move_at_once() const;
+  /// Sends bodies and contacts, if they have changed here.
+  void send_to_device();
+  /// Forces and motion on the device.
+  void step_on_device();
   void grow();
   /// Sets the strain rate that keeps the stresses of the cell.
   void drive_cell();
@@ -102,7 +117,9 @@ class Stepper {
   std::vector<Newcomers::Group> arrivals_;  // since the last rebuild, with their first ids
   std::vector<std::size_t> late_;           // chunks that could not move at once
   std::vector<WallLoad> loads_;
-  std::uint64_t forces_step_ = ~0ull;  // step at which contacts were last updated
+  static constexpr std::uint64_t never = ~0ull;
+  std::uint64_t forces_step_ = never;  // step at which contacts were last updated
+  bool device_is_ahead_ = false;       // it has moved bodies since they were brought home
   double body_steps_ = 0;
   SharingRecord sharing_;
 };

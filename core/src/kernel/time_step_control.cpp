@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "format/number.hpp"
+#include "kernel/completion.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/group_view.hpp"
 
@@ -98,11 +99,13 @@ CriticalStep::Change TimeStepControl::change_that_matters(const State& state) co
   return {renew_distance * state.statistics.mean_diameter, stiffening_.least_overlap()};
 }
 
-bool TimeStepControl::due(State& state, const Passes& passes) const {
+bool TimeStepControl::due(State& state, Passes& passes) const {
   if (requested_ || unchecked(state)) return false;
   const CriticalStep::Change change = change_that_matters(state);
-  for (const std::size_t chunk : critical_.in_doubt(state.wall_contacts, state.lists.skins(), change, passes.ranks()))
+  for (const std::size_t chunk : critical_.in_doubt(state.wall_contacts, state.lists.skins(), change, passes.ranks())) {
+    bring_bodies(state, passes);
     state.lists.measure(chunk, state.bodies, state.cell);
+  }
   return critical_.due(state.wall_contacts, state.lists.skins(), change, passes.ranks());
 }
 

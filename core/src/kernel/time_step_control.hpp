@@ -25,7 +25,7 @@ class TimeStepControl {
   void search_ends(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
   /// Whether own bodies have moved or been compressed so far that contacts are new or stiffer. A prescribed step that
   /// may be unstable needs no updates.
-  bool due(State& state, const Passes& passes) const;
+  bool due(State& state, Passes& passes) const;
   /// Before an evaluation without a rebuild: sets the time step if requested; otherwise updates it, for such contacts
   /// if it is `due` on any rank, and for speeds.
   void follow(bool due, State& state, const World& world, DisplacementBounds& bounds, Passes& passes);

@@ -7,19 +7,11 @@
 #include <optional>
 #include <vector>
 
+#include "motion/body_step.hpp"
 #include "motion/rigid_step.hpp"
 
 namespace grit {
 namespace {
-
-Quad quad(const Vec3& v) { return Quad{v.x(), v.y(), v.z(), 0}; }
-
-/// Local damping: reduces components that accelerate the body, increases those that decelerate it; no effect at rest.
-Quad damped(const Quad& force, const Quad& velocity, double coefficient) {
-  const Quad power = force * velocity;
-  const Quad less = force * (1 - coefficient), more = force * (1 + coefficient);
-  return power > 0 ? less : power < 0 ? more : force;
-}
 
 /// The reduction of the force over the damping coefficient; `push` has the signs of the force.
 Quad taken(const Quad& force, const Quad& push, const Quad& velocity) {
@@ -39,27 +31,13 @@ void turn_on(Vec3* turned, std::size_t body, const Quad& spin, const Quad& drift
 
 double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Share of a body's mass on which gravity acts; see MotionSettings::unscaled_share().
-double weighing_share(double radius, double scaled_radius) {
-  if (!(radius < scaled_radius)) return 1;
-  const double ratio = radius / scaled_radius;
-  return ratio * ratio * ratio;
-}
-
-/// What a step does to bodies with the same settings. The fourth number of a row (radius, 1/mass, 1/inertia) is
-/// unchanged.
-struct Kick {
-  Quad kick, turn_kick, fall, weight;
-  double damping, scaled_radius;
+/// The same, with what only the energies of these bodies depend on.
+struct KickOfGroup : Kick<Quad> {
+  Quad weight;
   std::optional<RigidStep> prescribed;
 
-  Kick(const MotionSettings& settings, const MotionStep& step)
-      : kick(step.kick * quad(settings.free_translation())),
-        turn_kick(step.kick * quad(settings.free_rotation())),
-        fall(quad(settings.free_translation()) * quad(Vec3(settings.gravity * step.kick))),
-        weight(quad(settings.gravity)),
-        damping(settings.local_damping),
-        scaled_radius(settings.scaled_radius) {
+  KickOfGroup(const MotionSettings& settings, const MotionStep& step)
+      : Kick<Quad>(kick_of<Quad>(settings, step)), weight(as_four<Quad>(settings.gravity)) {
     if (settings.prescribed) prescribed.emplace(*settings.prescribed, step.drift);
   }
 };
@@ -72,23 +50,19 @@ enum class EnergyTerms { none, without_weight, with_weight, with_flow };
 template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
 [[gnu::noinline]] Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
-  const Quad rate = quad(step.strain_rate), centre = quad(step.centre);
-  // The mean flow at a body changes as the body moves with it; without this term, bodies would lag behind the cell's
-  // sides.
-  const Quad growth = rate * step.flowed;
-  [[maybe_unused]] const double xy = step.shear_rate[0], xz = step.shear_rate[1], yz = step.shear_rate[2];
-  // Of velocities that the gradients xy, xz and yz add.
-  [[maybe_unused]] const auto sheared = [&](const Quad& place) {
-    return Quad{xy * place[1] + xz * place[2], yz * place[2], 0, 0};
+  // Local copies: for the compiler, stores might alias members.
+  const auto mean = mean_flow_of<Quad>(step);
+  const auto flow_at = [&](const Quad& place) {
+    Quad flow = mean.rate * (place - mean.centre);
+    if constexpr (Shears) flow += mean.sheared(place - mean.centre);
+    return flow;
   };
-  std::vector<Kick> by_group;
+  std::vector<KickOfGroup> by_group;
   if constexpr (Groups)
     for (const MotionSettings& settings : step.by_group) by_group.emplace_back(settings, step);
-  const Kick same(step.settings, step);
-  // Local copies, as of the pointers below: for the compiler, stores might alias members.
-  const Quad kick_of_all = same.kick, turn_kick_of_all = same.turn_kick, fall_of_all = same.fall,
-             weight_of_all = same.weight;
-  const double damping_of_all = same.damping, scaled_radius_of_all = same.scaled_radius;
+  const KickOfGroup same(step.settings, step);
+  const Kick<Quad> kick_of_all = same;
+  const Quad weight_of_all = same.weight;
   const Quad drift{step.drift, step.drift, step.drift, 0}, ones{1, 1, 1, 0};
   constexpr bool flows = energies == EnergyTerms::with_flow, falls = flows || energies == EnergyTerms::with_weight;
   Quad low{unbounded, unbounded, unbounded, 0}, high = -low;
@@ -105,65 +79,55 @@ template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
     if constexpr (Clumps)
       if (bodies.clumps.of_body[i].clump != no_clump) {
         const Quad v = load(velocity[i]), before = load(position[i]) - v * drift;
-        Quad against = v - rate * (before - centre);
-        if constexpr (Shears) against -= sheared(before - centre);
-        bound(against);
+        bound(v - flow_at(before));
         poison += v * 0.0 + load(spin[i]) * 0.0;
         turn_on(turned, i, load(spin[i]), drift);
         continue;
       }
-    const Kick& own = Groups ? by_group[step.group[i]] : same;
+    const KickOfGroup& own = Groups ? by_group[step.group[i]] : same;
     if constexpr (Groups)
       if (own.prescribed) {
         const Quad v_before = load(velocity[i]), w_before = load(spin[i]), x = load(position[i]);
         const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
-        Quad v = quad(own.prescribed->velocity_at(xyz(position[i]))), w = quad(own.prescribed->spin());
+        Quad v = as_four<Quad>(own.prescribed->velocity_at(xyz(position[i]))),
+             w = as_four<Quad>(own.prescribed->spin());
         prescribed += 0.5 * (product(v, v) - product(v_before, v_before)) / inverse_mass +
                       0.5 * (product(w, w) - product(w_before, w_before)) / inverse_inertia;
         if constexpr (falls) momentum += v * own.weight * weighing_share(x[3], own.scaled_radius) / inverse_mass;
-        Quad carried = rate * (x - centre);
-        if constexpr (Shears) carried += sheared(x - centre);
-        bound(v - carried);
+        bound(v - flow_at(x));
         turn_on(turned, i, w, drift);
         v[3] = inverse_mass, w[3] = inverse_inertia;
         store(x + v * drift, position[i]), store(v, velocity[i]), store(w, spin[i]);
         continue;
       }
-    const Quad kick = Groups ? own.kick : kick_of_all, turn_kick = Groups ? own.turn_kick : turn_kick_of_all,
-               fall = Groups ? own.fall : fall_of_all, weight = Groups ? own.weight : weight_of_all;
-    const double damping = Groups ? own.damping : damping_of_all,
-                 scaled_radius = Groups ? own.scaled_radius : scaled_radius_of_all;
+    const Kick<Quad>& kick = Groups ? own : kick_of_all;
+    const Quad weight = Groups ? own.weight : weight_of_all;
     const Quad force = load(sum[i].force), moment = load(sum[i].moment);
-    Quad x = load(position[i]), v = load(velocity[i]), w = load(spin[i]);
-    const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w, share = weighing_share(x[3], scaled_radius);
-    const Quad before = v;
-    v += growth * v;
-    Quad flow = rate * (x - centre);
-    if constexpr (Shears) v += step.flowed * sheared(before), flow += sheared(x - centre);
-    Quad push = force * (kick * inverse_mass) + fall * share;
-    Quad twist = moment * (turn_kick * inverse_inertia);
+    const Quad x = load(position[i]), before = load(velocity[i]), w = load(spin[i]);
+    const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
+    const double share = weighing_share(x[3], kick.scaled_radius);
+    const BodyStep<Quad> own_step =
+        step_of_body<Shears>(x, before, w, force, moment, inverse_mass, inverse_inertia, share, kick, mean);
+    const auto& [flow, free, push, pushed, twist, twisted] = own_step;
     const double mass = falls ? 1 / inverse_mass : 0, weighing = mass * share;
-    if (damping > 0) {
-      const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
-      if constexpr (energies != EnergyTerms::none) {
+    if constexpr (energies != EnergyTerms::none)
+      if (kick.damping > 0) {
         // Sums of bodies with the same settings are multiplied by these at the end.
-        const Quad lost = Groups ? damping * kick : ones, lost_by_turning = Groups ? damping * turn_kick : ones;
-        const Quad less = lost * taken(falls ? force + weight * weighing : force, push, v - flow);
-        damped_power += less * (v - flow + 0.5 * pushed);
+        const Quad lost = Groups ? kick.damping * kick.kick : ones,
+                   lost_by_turning = Groups ? kick.damping * kick.turn_kick : ones;
+        const Quad less = lost * taken(falls ? force + weight * weighing : force, push, free - flow);
+        damped_power += less * (free - flow + 0.5 * pushed);
         if constexpr (flows) flow_power -= less * flow;
         damped_turning += lost_by_turning * taken(moment, twist, w) * (w + 0.5 * twisted);
       }
-      push = pushed, twist = twisted;
-    }
-    v += push, w += twist;
-    x += v * drift;
+    const Quad v = free + pushed, turning = w + twisted;
     if constexpr (falls) momentum += Groups ? v * weighing * weight : v * weighing;
-    if constexpr (flows) flow_work += 0.5 * mass * (growth * before) * (before + v);
-    if constexpr (flows && Shears) flow_work += 0.5 * mass * step.flowed * sheared(before) * (before + v);
-    store(x, position[i]), store(v, velocity[i]), store(w, spin[i]);
-    turn_on(turned, i, w, drift);
+    if constexpr (flows) flow_work += 0.5 * mass * (mean.growth * before) * (before + v);
+    if constexpr (flows && Shears) flow_work += 0.5 * mass * mean.flowed * mean.sheared(before) * (before + v);
+    store(x + v * drift, position[i]), store(v, velocity[i]), store(turning, spin[i]);
+    turn_on(turned, i, turning, drift);
     bound(v - flow);
-    poison += v * 0.0 + w * 0.0;
+    poison += v * 0.0 + turning * 0.0;
   }
   const Quad kick = Groups ? ones : same.kick, turn_kick = Groups ? ones : same.turn_kick,
              weight = Groups ? ones : same.weight;

@@ -40,6 +40,7 @@ struct RunFacts {
   std::vector<PluginUsed> plugins;
   std::int64_t seed = 0;
   unsigned threads = 1, ranks = 1;
+  std::string engine = "cpu";  ///< what steps the bodies
   std::map<std::string, ClumpFacts> clumps;  ///< by name of the group
   DescriptionSource source = {};
   /// Points of the reference curves, {"x": […], "y": […]} by name: a page needs no file beside the folder of results.

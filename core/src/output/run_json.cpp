@@ -72,6 +72,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"seed", facts.seed},
            {"threads", facts.threads},
            {"ranks", facts.ranks},
+           {"engine", facts.engine},
            {"sharing", nullptr},
            {"stage", ""},
            {"time", 0.0},

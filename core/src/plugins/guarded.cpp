@@ -131,6 +131,13 @@ class GuardedContactLaw final : public Guard<ContactLaw> {
   void evaluate_pairs_reference(PairBatch& batch) const override {
     guard("evaluate_pairs_reference()", [&] { made().evaluate_pairs_reference(batch); });
   }
+  std::optional<DeviceLaw> device() const override {
+    return guard("device()", [&] { return made().device(); });
+  }
+  void evaluate_device_pairs(const DevicePairs& pairs, const void* parameters, std::uint32_t first,
+                             std::uint32_t last) const override {
+    guard("evaluate_device_pairs()", [&] { made().evaluate_device_pairs(pairs, parameters, first, last); });
+  }
   Stiffness stiffness(const PairSize& pair, std::size_t material_a, std::size_t material_b) const override {
     return guard("stiffness()", [&] { return made().stiffness(pair, material_a, material_b); });
   }

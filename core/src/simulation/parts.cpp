@@ -19,7 +19,7 @@ Recorder& no_recorder() {
 }  // namespace
 
 Simulation::Parts::Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, unsigned threads, Recorder* record,
-                         Communicator* ranks)
+                         Communicator* ranks, DeviceKind device)
     : opened(std::move(scene)),
       recorder(record != nullptr ? *record : no_recorder()),
       kernel(at_first_instant(opened->scene.document,
@@ -29,6 +29,7 @@ Simulation::Parts::Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, 
                               })),
       runner(opened->scene, opened->live, kernel, recorder),
       progress(runner, kernel, opened->scene.stages.size()) {
+  at_first_instant(opened->scene.document, [&] { kernel.step_on(device); });
   placed([this] { runner.prepare(); });
 }
 

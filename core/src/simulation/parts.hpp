@@ -21,9 +21,10 @@ namespace grit {
 struct Simulation::Parts {
   /// `prepared`: from which the simulation starts. `record` gets all reports of the simulation and must outlive it;
   /// null: nothing is recorded. `ranks`: processes that share the simulation, all of which make these parts and call
-  /// the same functions; null: one. Throws DescriptionError for faults found when the kernel and probes are made.
+  /// the same functions; null: one. `device`: that steps the bodies. Throws DescriptionError for faults found when the
+  /// kernel and probes are made.
   Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, unsigned threads, Recorder* record = nullptr,
-        Communicator* ranks = nullptr);
+        Communicator* ranks = nullptr, DeviceKind device = DeviceKind::none);
 
   /// Throws `failure` again, if there is one. start(), next(), set() and save() do so first.
   void refuse_failed() const {

@@ -26,7 +26,7 @@ std::unique_ptr<Simulation::Parts> made(std::shared_ptr<const Registry> registry
   const auto opened = std::make_shared<OpenedScene>(std::move(registry), std::move(scene));
   return std::make_unique<Simulation::Parts>(
       opened, resumes ? opened->prepare_to_resume(options.state) : opened->prepare(options.state), options.threads,
-      record);
+      record, nullptr, options.device);
 }
 
 std::unique_ptr<Simulation::Parts> made(Document written, const SimulationOptions& options, bool resumes,

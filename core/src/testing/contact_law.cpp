@@ -53,6 +53,39 @@ TEST_P(ContactLawContract, LanesAgreeWithScalarTwin) {
   }
 }
 
+TEST_P(ContactLawContract, DevicesAgreeWithTheScalarTwin) {
+  if (!law_->device()) GTEST_SKIP() << "devices cannot evaluate the law";
+  const auto fields = law_->state();
+  for (const bool periodic : {false, true})
+    for (const bool materials : {false, true}) {
+      Pairs device = scene(periodic, materials, false), twin = device;
+      EXPECT_TRUE(device.evaluate_on_device()) << "the two bodies of a pair differ";
+      twin.evaluate_reference();
+      std::vector<Vec3> force(twin.count(), Vec3::Zero()), moment = force;
+      std::vector<double> forces(twin.count(), 0.0), moments = forces, eps = forces;  // sums of magnitudes
+      for (std::size_t c = 0; c < twin.places(); ++c) {
+        ASSERT_EQ(device.touching(c), twin.touching(c)) << c;
+        if (!twin.touching(c)) continue;
+        if (law_->has_reach()) EXPECT_EQ(device.acts(c), twin.acts(c)) << c;
+        const auto a = twin.a(c), b = twin.b(c);
+        force[b] += vec(twin.row(c).force), moment[b] += vec(twin.row(c).moment);
+        const double spring = GetParam().attracts ? spring_force(twin, c) : 0;
+        for (const auto body : {a, b}) {
+          forces[body] += std::max(scale(twin, c, "N"), spring), moments[body] += scale(twin, c, "N m");
+          eps[body] = std::max(eps[body], round_off(twin, c));
+        }
+        for (std::size_t f = 0; f < fields.size(); ++f)
+          EXPECT_NEAR(device.state(c, f), twin.state(c, f), round_off(twin, c) * scale(twin, c, fields[f].unit))
+              << c << fields[f].name;
+      }
+      for (std::size_t i = 0; i < twin.count(); ++i) {
+        EXPECT_LE((vec(device.sum(i).force) - vec(twin.sum(i).force) - force[i]).norm(), eps[i] * forces[i]) << i;
+        EXPECT_LE((vec(device.sum(i).moment) - vec(twin.sum(i).moment) - moment[i]).norm(), eps[i] * moments[i]) << i;
+      }
+      EXPECT_NEAR(device.largest_overlap(), twin.largest_overlap(), 1e-13);
+    }
+}
+
 /// The law in single precision.
 std::unique_ptr<ContactLaw> single_law(LawValues values) {
   values.settings["precision"] = "single";

@@ -21,6 +21,12 @@ struct Law final : grit::ContactLaw {
   void evaluate_pairs(grit::PairBatch&) const override { throwing::here("evaluate_pairs()"); }
   void evaluate_walls(grit::WallBatch&) const override { throwing::here("evaluate_walls()"); }
   void evaluate_pairs_reference(grit::PairBatch&) const override { throwing::here("evaluate_pairs_reference()"); }
+  std::optional<grit::DeviceLaw> device() const override {
+    return throwing::here("device()"), std::optional<grit::DeviceLaw>();
+  }
+  void evaluate_device_pairs(const grit::DevicePairs&, const void*, std::uint32_t, std::uint32_t) const override {
+    throwing::here("evaluate_device_pairs()");
+  }
   grit::Stiffness stiffness(const grit::PairSize&, std::size_t, std::size_t) const override {
     return throwing::here("stiffness()"), grit::Stiffness();
   }

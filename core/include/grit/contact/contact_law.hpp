@@ -1,6 +1,9 @@
 // Contact laws as the kernel calls them. To write a law, do not derive from this; see grit/contact/law.hpp.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -54,6 +57,13 @@ struct LawLoop {
   std::vector<std::string> inactive;  ///< features that no material pair needs
 };
 
+struct DevicePairs;
+
+/// What a device needs of a law, beside its kernel.
+struct DeviceLaw {
+  std::span<const std::byte> parameters;  ///< of pairs of materials, to be copied to the device
+};
+
 /// evaluate_* is called from several threads at once on disjoint chunks; all other calls come from the thread that owns
 /// the simulation. An exception ends the run, and its message names the law.
 class ContactLaw {
@@ -80,6 +90,12 @@ class ContactLaw {
   virtual void evaluate_walls(WallBatch& batch) const = 0;
   /// The same with scalars instead of SIMD lanes, for tests.
   virtual void evaluate_pairs_reference(PairBatch& batch) const = 0;
+  /// With the present parameters; none if devices cannot evaluate the law with them.
+  virtual std::optional<DeviceLaw> device() const { return {}; }
+  /// The kernel of devices in a loop on the CPU, for bodies from `first` to before `last`; see device_kernel.hpp.
+  /// `parameters`: a copy of those of device().
+  virtual void evaluate_device_pairs(const DevicePairs& /*pairs*/, const void* /*parameters*/, std::uint32_t /*first*/,
+                                     std::uint32_t /*last*/) const {}
   virtual Stiffness stiffness(const PairSize& pair, std::size_t material_a, std::size_t material_b) const = 0;
   /// Whether bodies may interact at a distance.
   virtual bool has_reach() const { return false; }

@@ -14,6 +14,8 @@
 #include "grit/contact/contact_law.hpp"
 #include "grit/contact/contact_point.hpp"
 #include "grit/contact/law.hpp"
+#include "grit/contact/law_members.hpp"
+#include "grit/contact/pair_point.hpp"
 
 namespace grit {
 
@@ -28,59 +30,12 @@ template <class Law, unsigned Features, class L>
   else return {};
 }
 
-/// The reciprocals of both. In double precision one division is faster; in single precision it would lose digits.
-template <class L>
-[[gnu::always_inline]] inline std::pair<L, L> inverses(const L& a, const L& b) {
-  if constexpr (is_single<L>) return {L(1.0) / a, L(1.0) / b};
-  const L of_product = L(1.0) / (a * b);
-  return {of_product * b, of_product * a};
-}
-
-/// `turns` is 1, or 0 to omit the change of normal.
-template <class L>
-[[gnu::always_inline]] inline Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a,
-                                                const Vec<L>& spin_b, double dt, const L& turns) {
-  Turn<L> turn;
-  turn.normal = normal;
-  turn.bisector = normal + before;
-  // Opposite normals (half a turn in one step) have no bisector; the guard on the displacement per step stops the run
-  // before that.
-  turn.over = turns / max(dot(turn.bisector, normal), L(1e-6));
-  const L half = L(0.25 * dt) * dot(spin_a + spin_b, normal);  // tan(angle / 2), Cayley's form of a rotation
-  const L scale = L(1.0) / (L(1.0) + half * half);
-  turn.cosine = (L(1.0) - half * half) * scale;
-  turn.sine = L(2.0) * half * scale;
-  return turn;
-}
-
 /// `left`: minus the dissipation of each lane.
 template <class L>
 inline void add_losses(const Loss<L>& left, Losses& losses) {
   losses.friction -= total(left.friction), losses.rolling -= total(left.rolling);
   losses.viscosity -= total(left.viscosity);
 }
-
-/// Member `i` of a struct that consists of lanes. (std::bit_cast was measured to copy through memory.)
-template <class L, class Members>
-[[gnu::always_inline]] inline L& member(Members& members, std::size_t i) {
-  static_assert((std::is_empty_v<Members> || sizeof(Members) % sizeof(L) == 0) &&
-                std::is_trivially_copyable_v<Members>);
-  return reinterpret_cast<L*>(&members)[i];
-}
-template <class Members, class L>
-inline constexpr std::size_t member_count = sizeof(Members) / sizeof(L);
-
-/// Indices of the bits that are set.
-template <unsigned mask>
-inline constexpr auto places_of_bits = [] {
-  std::array<std::size_t, std::popcount(mask)> places{};
-  for (std::size_t bit = 0, k = 0; k < places.size(); ++bit)
-    if ((mask >> bit & 1) != 0) places[k++] = bit;
-  return places;
-}();
-/// Indices in State of the fields that contacts keep.
-template <class Law, unsigned Features>
-inline constexpr auto kept_fields = places_of_bits<fields_used<Law>(Features)>;
 
 /// Parameters of contacts, one contact per lane.
 template <class Law, class L, class Index>
@@ -251,9 +206,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
   using State = typename Law::template State<L>;
   const PairBatch batch = out;  // a copy, which sums cannot alias
   using W = Wide<L>;
-  const L dt = static_cast<L>(batch.dt), per_dt = static_cast<L>(batch.dt > 0 ? 1 / batch.dt : 0.0);
-  const double history_dt = batch.again ? 0 : batch.dt;
-  const L turns(batch.again ? 0.0 : 1.0);
+  const PairStep<L> step(batch.dt, batch.again);
   L largest(0.0);
   // Losses are subtracted: of a law without losses the compiler removes x − 0, but not x + 0.
   Loss<W> left{W(0.0), W(0.0), W(0.0)};
@@ -311,7 +264,6 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       }
       const auto contacts = mask_in_precision<L>(square < furthest * furthest);
       const std::uint32_t now = bits(contacts);
-      const L reach = in_precision<L>(radii);
       const auto length = [&] { return sqrt(in_precision<L>(square)); };
       double* state_at = nullptr;
       if constexpr (fields > 0) state_at = batch.state + block * fields * block_size + sub;
@@ -343,42 +295,9 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       if constexpr (Periodic) {
         if (shifted) apart = apart + load_rows<W>(&batch.shifts->velocity, shift).xyz();
       }
-      const Vec<L> branch = in_precision<L>(between), velocity = in_precision<L>(apart);
-      const L distance = max(length(), L(tiny<L>));
-      const auto [per_distance, per_reach] = inverses(distance, reach);
-      const Vec<L> normal = per_distance * branch;
-      const Vec<L> way = dt * velocity, branch_before = branch - way;
-      const L distance_before = max(sqrt(dot(branch_before, branch_before)), L(tiny<L>));
-      L overlap, overlap_before;
-      Vec<L> normal_before, change_of_normal;
-      if constexpr (is_single<L>) {
-        // Small differences are computed in double precision, from the difference of the squares.
-        const L longer = dot(way, branch + branch_before) / (distance + distance_before);
-        overlap = in_precision<L>(radii * radii - square) / (reach + distance), overlap_before = overlap + longer;
-        change_of_normal = (L(1.0) / distance_before) * (way - longer * normal);
-        normal_before = normal - change_of_normal;
-      } else {
-        overlap = reach - distance, overlap_before = reach - distance_before;
-        normal_before = (L(1.0) / distance_before) * branch_before;
-        change_of_normal = normal - normal_before;
-      }
-
-      ContactPoint<L> at;
-      at.normal = normal;
-      if constexpr (Law::traits.reach) at.overlap = overlap;
-      else at.overlap = max(overlap, L(0.0));
-      at.branch_fraction = distance * per_reach;
-      at.radius_a = in_precision<L>(pa.w), at.radius_b = in_precision<L>(pb.w);
-      at.inverse_mass_a = in_precision<L>(va.w), at.inverse_mass_b = in_precision<L>(vb.w);
-      at.turn =
-          make_turn(normal, normal_before, in_precision<L>(wa.xyz()), in_precision<L>(wb.xyz()), history_dt, turns);
-      // The last term extends the branch to the sum of the radii; without it a pair that rotates as one body would
-      // slip. The spins act on the normal at the middle of the step, the instant of the velocities.
-      at.velocity = velocity - cross(in_precision<L>(pa.w * wa.xyz() + pb.w * wb.xyz()), L(0.5) * at.turn.bisector) +
-                    (overlap_before * per_dt) * change_of_normal;
-      at.spin = in_precision<L>(wb.xyz() - wa.xyz());
-      at.dt = L(history_dt);
-      largest = max(largest, at.overlap / max(min(at.radius_a, at.radius_b), L(tiny<L>)));
+      const PairPoint<L> point = pair_point<Law::traits.reach, L>(between, apart, square, pa, pb, va, vb, wa, wb, step);
+      const ContactPoint<L>& at = point.at;
+      largest = max(largest, relative_overlap(at));
 
       State state{};
       for (std::size_t f = 0; f < fields; ++f) member<L>(state, kept[f]) = load_lanes<L>(state_at + f * block_size);
@@ -399,16 +318,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       for (std::size_t f = 0; f < fields; ++f)
         store_lanes(select(contacts, member<L>(state, kept[f]), zero), state_at + f * block_size);
 
-      // The shear spring acts on surfaces at the sum of the radii from each other. Centres that are nearer move less
-      // than these surfaces, so that the force on them is larger; its moments are those of the spring at the radii.
-      // The work on the bodies is then that on the spring in all motions, and angular momentum is conserved.
-      const Vec<L> none{zero, zero, zero};
-      const Vec<L> force =
-          select(contacts, response.normal_force * normal + (reach * per_distance) * response.shear, none);
-      const Vec<L> lever = cross(normal, select(contacts, response.shear, none));
-      const Vec<L> moment = select(contacts, response.moment, none);
-      const Vec<L> moment_a = -moment - at.radius_a * lever;
-      const Vec<L> moment_b = moment - at.radius_b * lever;
+      const PairForces<L> acts = pair_forces(point, response, contacts);
       const L normal_force = select(contacts, response.normal_force, zero);
       const L shown_overlap = select(contacts, at.overlap, zero);
 
@@ -416,24 +326,25 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       if (batch.row == nullptr) {
         // Padding adds zeros to the last body of the chunk.
         const auto own_b = [=](std::size_t k) { return std::min(ib[k], last_body); };
-        store_rows(widened(force.x), widened(force.y), widened(force.z), W(0.0), [=](std::size_t k, const Quad& force) {
-          sum[ia[k]].force -= force;
-          sum[own_b(k)].force += force;
-        });
-        store_rows(widened(moment_b.x), widened(moment_b.y), widened(moment_b.z), W(0.0),
+        store_rows(widened(acts.force.x), widened(acts.force.y), widened(acts.force.z), W(0.0),
+                   [=](std::size_t k, const Quad& force) {
+                     sum[ia[k]].force -= force;
+                     sum[own_b(k)].force += force;
+                   });
+        store_rows(widened(acts.moment_b.x), widened(acts.moment_b.y), widened(acts.moment_b.z), W(0.0),
                    [=](std::size_t k, const Quad& moment) { sum[own_b(k)].moment += moment; });
       } else {
         ContactRow* const row = batch.row + (first - first_row);
-        store_rows(widened(force.x), widened(force.y), widened(force.z), widened(normal_force),
+        store_rows(widened(acts.force.x), widened(acts.force.y), widened(acts.force.z), widened(normal_force),
                    [=](std::size_t k, const Quad& force) {
                      store(force, row[k].force);
                      if (sum != nullptr) sum[ia[k]].force -= force;
                    });
-        store_rows(widened(moment_b.x), widened(moment_b.y), widened(moment_b.z), widened(shown_overlap),
+        store_rows(widened(acts.moment_b.x), widened(acts.moment_b.y), widened(acts.moment_b.z), widened(shown_overlap),
                    [=](std::size_t k, const Quad& moment) { store(moment, row[k].moment); });
       }
       if (sum != nullptr)
-        store_rows(widened(moment_a.x), widened(moment_a.y), widened(moment_a.z), W(0.0),
+        store_rows(widened(acts.moment_a.x), widened(acts.moment_a.y), widened(acts.moment_a.z), W(0.0),
                    [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
     }
     batch.touching[block] = static_cast<std::uint8_t>(contacts_now);

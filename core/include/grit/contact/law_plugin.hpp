@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grit/contact/cpu_loop.hpp"
+#include "grit/contact/device_kernel.hpp"
 #include "grit/contact/law.hpp"
 #include "grit/plugin.hpp"
 
@@ -79,6 +80,18 @@ class LawPlugin final : public ContactLaw {
     with_features([&]<unsigned F>() {
       if (batch.losses != nullptr) detail::wall_loop<Law, F, Lane, true>(batch, wall_table_.data(), count_);
       else detail::wall_loop<Law, F, Lane, false>(batch, wall_table_.data(), count_);
+    });
+  }
+  std::optional<DeviceLaw> device() const override {
+    if (single()) return {};
+    return DeviceLaw{std::as_bytes(std::span(table_))};
+  }
+  void evaluate_device_pairs(const DevicePairs& pairs, const void* parameters, std::uint32_t first,
+                             std::uint32_t last) const override {
+    with_features([&]<unsigned F>() {
+      const DevicePairKernel<Law, F> kernel{pairs, static_cast<const Pair*>(parameters),
+                                            static_cast<std::uint32_t>(count_)};
+      for (std::uint32_t body = first; body < last; ++body) kernel(body);
     });
   }
   Stiffness stiffness(const PairSize& pair, std::size_t a, std::size_t b) const override {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grit/contact/contact_law.hpp"
+#include "grit/contact/device_pairs.hpp"
 #include "grit/contact/fields.hpp"
 
 namespace grit::test {
@@ -92,6 +93,67 @@ class Pairs {
   void evaluate_reference() { run(&ContactLaw::evaluate_pairs_reference); }
   /// As a chunk with all bodies: sums of both bodies, no rows.
   void evaluate_within() { run(&ContactLaw::evaluate_pairs, true); }
+  /// As devices do, whose sums are the totals of both bodies. Returns whether both bodies of every pair have found the
+  /// same bits.
+  bool evaluate_on_device() {
+    const auto bodies = static_cast<std::uint32_t>(count());
+    std::vector<std::vector<std::pair<DeviceNeighbour, std::size_t>>> lists(bodies);  // with the position of the pair
+    for (std::size_t c = 0; c < used_; ++c) {
+      if (b_[c] == pad_) continue;
+      lists[a_[c]].push_back({{.body = b_[c], .image = image_[c], .is_a = 0}, c});
+      lists[b_[c]].push_back({{.body = a_[c], .image = image_[c], .is_a = 1}, c});
+    }
+    std::vector<std::uint32_t> first{0};
+    std::vector<DeviceNeighbour> neighbours;
+    std::vector<std::size_t> place;
+    for (const auto& list : lists) {
+      for (const auto& [neighbour, c] : list) neighbours.push_back(neighbour), place.push_back(c);
+      first.push_back(static_cast<std::uint32_t>(neighbours.size()));
+    }
+    const std::size_t entries = place.size();
+    std::vector<std::uint8_t> contact(entries);
+    std::vector<double> histories(entries * fields_.size());
+    for (std::size_t e = 0; e < entries; ++e) {
+      contact[e] = static_cast<std::uint8_t>((touching(place[e]) ? DevicePairs::in_contact : 0) |
+                                             (acts(place[e]) ? DevicePairs::is_acting : 0));
+      for (std::size_t f = 0; f < fields_.size(); ++f) histories[f * entries + e] = state(place[e], f);
+    }
+    sum_.assign(position_.size(), {});
+    const auto on_device = law_->device();
+    const std::vector<std::byte> parameters(on_device->parameters.begin(), on_device->parameters.end());
+    law_->evaluate_device_pairs({.position = position_.data(),
+                                 .velocity = velocity_.data(),
+                                 .spin = spin_.data(),
+                                 .material = one_material ? nullptr : material_.data(),
+                                 .shifts = shifts.empty() ? nullptr : shifts.data(),
+                                 .first = first.data(),
+                                 .neighbour = neighbours.data(),
+                                 .contact = contact.data(),
+                                 .state = histories.data(),
+                                 .entries = entries,
+                                 .dt = dt,
+                                 .again = false,
+                                 .sum = sum_.data()},
+                                parameters.data(), 0, bodies);
+    bool same = true;
+    std::vector<std::size_t> entry(used_, entries);
+    largest_overlap_ = 0;
+    for (std::size_t body = 0; body < bodies; ++body) largest_overlap_ = std::max(largest_overlap_, sum_[body].force.w);
+    for (std::size_t e = 0; e < entries; ++e) {
+      const std::size_t c = place[e], other = std::exchange(entry[c], e);
+      const auto bit = static_cast<std::uint8_t>(1u << (c % block_size));
+      const auto set = [&](std::uint8_t& mask, std::uint8_t flag) {
+        mask = static_cast<std::uint8_t>((contact[e] & flag) != 0 ? mask | bit : mask & ~bit);
+      };
+      set(touching_[c / block_size], DevicePairs::in_contact), set(acting_[c / block_size], DevicePairs::is_acting);
+      for (std::size_t f = 0; f < fields_.size(); ++f) state(c, f) = histories[f * entries + e];
+      if (other == entries) continue;
+      same = same && contact[e] == contact[other];
+      for (std::size_t f = 0; f < fields_.size(); ++f)
+        same = same && histories[f * entries + e] == histories[f * entries + other];
+    }
+    return same;
+  }
   /// Evaluates again at the same instant.
   void evaluate_again() { run(&ContactLaw::evaluate_pairs, false, true); }
   /// Moves all bodies through one step, then evaluates.
