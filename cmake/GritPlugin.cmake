@@ -2,9 +2,42 @@
 # <build>/lib/grit/<kind folder>/<name>.so, and test_<name>.cpp, if it exists and the project has found GTest, into a test
 # that has access to the same code, links the contract of its kind and runs in the plugin's folder. `cmake --install` installs the plugin
 # into lib/grit/<arch>, where grit of the same instruction set searches. The target grit_plugins builds all plugins of a
-# project. Part of the installed SDK.
+# project. Where nvcc is, a contact law is also compiled for GPUs. Part of the installed SDK.
 include(GNUInstallDirs)
 include(GoogleTest)
+
+option(GRIT_CUDA "Compile contact laws for GPUs, too, if nvcc is found" ON)
+if(GRIT_CUDA)
+  find_program(GRIT_NVCC nvcc PATHS /usr/local/cuda/bin DOC "compiler of CUDA")
+  if(GRIT_NVCC)
+    execute_process(COMMAND ${GRIT_NVCC} --version OUTPUT_VARIABLE grit_cuda_version)
+    string(REGEX MATCH "release ([0-9.]+)" grit_cuda_version "${grit_cuda_version}")
+    if(CMAKE_MATCH_1 VERSION_LESS 12.8)
+      message(STATUS "${GRIT_NVCC} is of CUDA ${CMAKE_MATCH_1}; needed is 12.8 or later")
+      set(GRIT_NVCC "")
+    endif()
+  endif()
+endif()
+# Code for any GPU from Ampere on; the driver translates it for the one that is there.
+set(grit_nvcc_flags -std=c++20 -arch=compute_80 --expt-relaxed-constexpr -O3 -diag-suppress 20012,186)
+
+# Adds the GPU's code of a contact law to its objects, as grit_ptx.
+function(grit_ptx target source)
+  set(ptx ${CMAKE_CURRENT_BINARY_DIR}/${target}.ptx)
+  set(embedded ${CMAKE_CURRENT_BINARY_DIR}/${target}_ptx.cpp)
+  set(source ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+  add_custom_command(OUTPUT ${ptx} DEPENDS ${source} DEPFILE ${ptx}.d COMMAND_EXPAND_LISTS VERBATIM
+    COMMENT "Compiling ${target} for GPUs"
+    COMMAND ${GRIT_NVCC} ${grit_nvcc_flags} "-I$<JOIN:$<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>,;-I>"
+            -MD -MF ${ptx}.d -x cu -ptx -o ${ptx} ${source}
+    COMMAND ${CMAKE_COMMAND} -DPTX=${ptx} -DSOURCE=${source} -P ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/GritPtx.cmake)
+  file(CONFIGURE OUTPUT ${embedded} @ONLY CONTENT
+"asm(\".pushsection .rodata\\n.globl grit_ptx, grit_ptx_end\\n.hidden grit_ptx, grit_ptx_end\\n\"
+    \"grit_ptx: .incbin \\\"${ptx}\\\"\\n.byte 0\\ngrit_ptx_end:\\n.popsection\");
+")
+  set_source_files_properties(${embedded} PROPERTIES OBJECT_DEPENDS ${ptx} SKIP_UNITY_BUILD_INCLUSION ON)
+  target_sources(${target} PRIVATE ${embedded})
+endfunction()
 
 # Contracts are tests that every plugin of a kind must pass (grit/testing): each is a library that is compiled once per project, when
 # a test links it. grit::testing is all of them.
@@ -46,6 +79,9 @@ function(grit_plugin folder name)
   target_link_libraries(${target}_objects PUBLIC grit::sdk ${arg_LIBRARIES})
   if(TARGET grit_precompiled_hidden)  # within grit's own tree
     target_precompile_headers(${target}_objects REUSE_FROM grit_precompiled_hidden)
+  endif()
+  if(folder STREQUAL contacts AND GRIT_NVCC)
+    grit_ptx(${target}_objects ${name}.cpp)
   endif()
   add_library(${target} MODULE)
   target_link_libraries(${target} PRIVATE ${target}_objects grit::grit)

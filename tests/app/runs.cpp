@@ -544,7 +544,7 @@ TEST_F(Runs, StepOnADevice) {
   EXPECT_EQ(run_json("cpu").at("engine"), "cpu");
   const auto unknown = grit({"run", "two.json", "--device", "fpga"});
   EXPECT_EQ(unknown.status, 1);
-  EXPECT_THAT(unknown.err, HasSubstr("--device takes none or emulated, not \"fpga\""));
+  EXPECT_THAT(unknown.err, HasSubstr("--device takes none, gpu or emulated, not \"fpga\""));
 }
 
 TEST_F(Runs, OnADeviceAreRefusedForAnyStage) {

@@ -104,7 +104,9 @@ TEST(Usage, VersionSaysWhatWasBuilt) {
   EXPECT_THAT(version.out,
               ContainsRegex("\nlibraries: Boost 1\\.[0-9.]+, Eigen [0-9.]+, fmt [0-9.]+, HDF5 1\\.[0-9.]+, "
                             "nlohmann_json [0-9.]+, spdlog [0-9.]+, zlib [0-9.]+\n"));
-  EXPECT_THAT(version.out, ContainsRegex("\nplugin interface \\(SDK\\): version [0-9]+\n$"));
+  EXPECT_THAT(
+      version.out,
+      ContainsRegex("\nplugin interface \\(SDK\\): version [0-9]+\nGPUs: (by CUDA|none \\(built without nvcc\\))\n$"));
 }
 
 TEST(Usage, AnInstructionSetThatIsNotTheBuildsOwnIsRefused) {

@@ -10,7 +10,7 @@
 namespace grit {
 
 /// Incremented with every change of an interface between grit and plugins.
-inline constexpr std::uint32_t sdk_version = 29;
+inline constexpr std::uint32_t sdk_version = 30;
 
 /// Size and alignment of a struct on the hot path.
 struct Layout {

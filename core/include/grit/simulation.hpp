@@ -27,6 +27,7 @@ class Engine;
 /// What steps the bodies.
 enum class DeviceKind {
   none,      ///< this process
+  gpu,       ///< a GPU, by CUDA
   emulated,  ///< the kernels of a GPU in loops on the CPU: to test them, not to be fast
 };
 

@@ -40,20 +40,28 @@ template <class L>
 struct Vec {
   L x, y, z;
 
-  [[gnu::always_inline]] friend Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  [[gnu::always_inline]] friend Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  [[gnu::always_inline]] friend Vec operator-(const Vec& a) { return {-a.x, -a.y, -a.z}; }
-  [[gnu::always_inline]] friend Vec operator*(const L& s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
-  [[gnu::always_inline]] friend Vec operator*(const Vec& a, const L& s) { return {s * a.x, s * a.y, s * a.z}; }
+  [[gnu::always_inline]] constexpr friend Vec operator+(const Vec& a, const Vec& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  [[gnu::always_inline]] constexpr friend Vec operator-(const Vec& a, const Vec& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  [[gnu::always_inline]] constexpr friend Vec operator-(const Vec& a) { return {-a.x, -a.y, -a.z}; }
+  [[gnu::always_inline]] constexpr friend Vec operator*(const L& s, const Vec& a) {
+    return {s * a.x, s * a.y, s * a.z};
+  }
+  [[gnu::always_inline]] constexpr friend Vec operator*(const Vec& a, const L& s) {
+    return {s * a.x, s * a.y, s * a.z};
+  }
 };
 
 template <class L>
-[[gnu::always_inline]] inline L dot(const Vec<L>& a, const Vec<L>& b) {
+[[gnu::always_inline]] constexpr L dot(const Vec<L>& a, const Vec<L>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 template <class L>
-[[gnu::always_inline]] inline Vec<L> cross(const Vec<L>& a, const Vec<L>& b) {
+[[gnu::always_inline]] constexpr Vec<L> cross(const Vec<L>& a, const Vec<L>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 

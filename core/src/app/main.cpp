@@ -12,6 +12,7 @@
 #include "app/installation.hpp"
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
+#include "device/open_device.hpp"
 #include "format/message.hpp"
 #include "format/resources.hpp"
 #include "format/utf8.hpp"
@@ -52,7 +53,8 @@ void print_version() {
             << (*build.revision == 0 ? "" : ")") << ", " << build.compiler << ", " << build.build_type << ", "
             << build.instruction_set << " (-march=" << build.arch << ")\n"
             << "compiler flags: " << build.flags << "\nlibraries: " << build.libraries
-            << "\nplugin interface (SDK): version " << sdk_version << '\n';
+            << "\nplugin interface (SDK): version " << sdk_version
+            << "\nGPUs: " << (has_gpu_component() ? "by CUDA" : "none (built without nvcc)") << '\n';
 }
 
 /// The launcher selects among installed builds. A single build must refuse a GRIT_ISA other than its own.

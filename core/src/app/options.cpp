@@ -67,14 +67,15 @@ void Options::add_threads(const char* doc) {
 void Options::add_device() {
   visible_.add_options()(
       "device", po::value<std::string>()->default_value("none")->value_name("KIND"),
-      "what steps the bodies: none (this process) or emulated (the kernels of a GPU in loops on the CPU, for tests)");
+      "what steps the bodies: none (this process), gpu, or emulated (the kernels of a GPU in loops on the CPU, for tests)");
 }
 
 DeviceKind Options::device() const {
   const auto kind = get<std::string>("device");
   if (kind == "none") return DeviceKind::none;
+  if (kind == "gpu") return DeviceKind::gpu;
   if (kind == "emulated") return DeviceKind::emulated;
-  throw UsageError("--device takes none or emulated, not \"" + kind + '"');
+  throw UsageError("--device takes none, gpu or emulated, not \"" + kind + '"');
 }
 
 unsigned Options::number(const char* name) const {

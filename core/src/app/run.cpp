@@ -149,7 +149,7 @@ RunFacts facts_of(const RunJob& job, unsigned threads, unsigned ranks, DeviceKin
           .seed = description.seed,
           .threads = threads,
           .ranks = ranks,
-          .engine = device == DeviceKind::emulated ? "emulated device" : "cpu",
+          .engine = device == DeviceKind::gpu ? "gpu" : device == DeviceKind::emulated ? "emulated device" : "cpu",
           .clumps = clumps_of(opened.live.components()),
           .source = job.source,
           .commands = {command_line}};

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "device/device_motion.hpp"
@@ -17,14 +18,15 @@ namespace grit {
 class Device {
  public:
   virtual ~Device() = default;
+  virtual std::string name() const = 0;
   /// Memory of the device, aligned for any type; throws Error if there is not enough.
   virtual void* allocate(std::size_t bytes) = 0;
   virtual void release(void* memory) noexcept = 0;
   virtual void write(void* to, const void* from, std::size_t bytes) = 0;
   virtual void read(void* to, const void* from, std::size_t bytes) = 0;
-  /// Runs the kernel of the law for so many bodies. `parameters`: DeviceLaw::parameters on the device.
-  virtual void evaluate(const ContactLaw& law, const DevicePairs& pairs, const void* parameters,
-                        std::uint32_t bodies) = 0;
+  /// Runs the kernel of the law for so many bodies. `parameters`: those of `on_device` in the memory of the device.
+  virtual void evaluate(const ContactLaw& law, const DeviceLaw& on_device, const DevicePairs& pairs,
+                        const void* parameters, std::uint32_t bodies) = 0;
   /// Runs DeviceMotion for all its bodies, chunk by chunk.
   virtual void move(const DeviceMotion& motion) = 0;
 };

@@ -41,13 +41,13 @@ struct DeviceMotion {
   bool shears;
 
   /// Moves one body. Returns the extremes of it alone.
-  DeviceChunk operator()(std::uint32_t i) const { return shears ? move<true>(i) : move<false>(i); }
+  constexpr DeviceChunk operator()(std::uint32_t i) const { return shears ? move<true>(i) : move<false>(i); }
 
  private:
-  static Four four(const Row& row) { return {{row.x, row.y, row.z, 0}}; }
+  static constexpr Four four(const Row& row) { return {{row.x, row.y, row.z, 0}}; }
 
   template <bool Shears>
-  DeviceChunk move(std::uint32_t i) const {
+  constexpr DeviceChunk move(std::uint32_t i) const {
     const BodySum& acting = sum[i];
     const Four x = four(position[i]), before = four(velocity[i]), w = four(spin[i]);
     const double radius = position[i].w, inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;

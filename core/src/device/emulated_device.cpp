@@ -21,7 +21,7 @@ void EmulatedDevice::read(void* to, const void* from, std::size_t bytes) {
   if (bytes > 0) std::memcpy(to, from, bytes);
 }
 
-void EmulatedDevice::evaluate(const ContactLaw& law, const DevicePairs& pairs, const void* parameters,
+void EmulatedDevice::evaluate(const ContactLaw& law, const DeviceLaw&, const DevicePairs& pairs, const void* parameters,
                               std::uint32_t bodies) {
   team_.each(chunks_of(bodies), [&](std::size_t chunk) {
     const ChunkRange range(chunk, bodies);

@@ -11,11 +11,13 @@ class EmulatedDevice final : public Device {
  public:
   explicit EmulatedDevice(Team& team) : team_(team) {}
 
+  std::string name() const override { return "emulated device"; }
   void* allocate(std::size_t bytes) override;
   void release(void* memory) noexcept override;
   void write(void* to, const void* from, std::size_t bytes) override;
   void read(void* to, const void* from, std::size_t bytes) override;
-  void evaluate(const ContactLaw& law, const DevicePairs& pairs, const void* parameters, std::uint32_t bodies) override;
+  void evaluate(const ContactLaw& law, const DeviceLaw& on_device, const DevicePairs& pairs, const void* parameters,
+                std::uint32_t bodies) override;
   void move(const DeviceMotion& motion) override;
 
  private:

@@ -39,7 +39,8 @@ void DeviceMirror::take(const Bodies& bodies, const ContactTable& pairs, std::sh
   law_ = std::move(law);
   const auto on_device = law_->device();
   if (!on_device) throw Error("the contact law cannot be evaluated on a device");
-  parameters_.write(on_device->parameters);
+  on_device_ = *on_device;
+  parameters_.write(on_device_.parameters);
   fields_ = law_->state().size();
   take_lists(pairs, count);
   sum_.resize(count), chunk_.resize(chunks_of(count)), chunks_.resize(chunks_of(count));
@@ -90,7 +91,7 @@ std::span<const DeviceChunk> DeviceMirror::step(const ImageShift* shifts, double
                           .dt = dt,
                           .again = advanced_,
                           .sum = sum_.data()};
-  device_->evaluate(*law_, pairs, parameters_.data(), bodies);
+  device_->evaluate(*law_, on_device_, pairs, parameters_.data(), bodies);
   device_->move({.position = position_.data(),
                  .velocity = velocity_.data(),
                  .spin = spin_.data(),

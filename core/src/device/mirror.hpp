@@ -52,6 +52,7 @@ class DeviceMirror {
   DeviceArray<DeviceChunk> chunk_;
   DeviceArray<std::byte> parameters_;
   std::shared_ptr<const ContactLaw> law_;
+  DeviceLaw on_device_;
   std::vector<std::uint32_t> entry_;  // of each candidate of the table, in the list of its a
   std::vector<DeviceChunk> chunks_;
   std::size_t fields_ = 0;

@@ -10,7 +10,7 @@
 #include "bodies/kinetic_energy.hpp"
 #include "bodies/make_bodies.hpp"
 #include "description/placed_error.hpp"
-#include "device/emulated_device.hpp"
+#include "device/open_device.hpp"
 #include "format/names.hpp"
 #include "grit/error.hpp"
 #include "kernel/arrivals.hpp"
@@ -256,10 +256,10 @@ void Kernel::let_in() {
   guard_.entered(energy.kinetic + energy.potential);
 }
 
-void Kernel::step_on(DeviceKind device) {
+void Kernel::use(DeviceKind device) {
   if (device == DeviceKind::none) return;
   refuse_obstacles(state_);
-  state_.device = std::make_unique<DeviceMirror>(std::make_unique<EmulatedDevice>(passes_.team()));
+  state_.device = std::make_unique<DeviceMirror>(open_device(device, passes_.team()));
 }
 
 void Kernel::find_forces() {

@@ -38,7 +38,7 @@ class Kernel {
   void change(const SceneDescription& scene, const Components& components);
 
   /// From the next step on a device steps the bodies. Throws PlacedError for what it cannot do yet. One rank only.
-  void step_on(DeviceKind device);
+  void use(DeviceKind device);
   void find_forces();
   void advance() { stepper_.advance(); }
   void step_on();

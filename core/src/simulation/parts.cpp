@@ -29,7 +29,7 @@ Simulation::Parts::Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, 
                               })),
       runner(opened->scene, opened->live, kernel, recorder),
       progress(runner, kernel, opened->scene.stages.size()) {
-  at_first_instant(opened->scene.document, [&] { kernel.step_on(device); });
+  at_first_instant(opened->scene.document, [&] { kernel.use(device); });
   placed([this] { runner.prepare(); });
 }
 

@@ -124,13 +124,13 @@ struct Capillary : LawBase {
   }
 
   template <class L>
-  [[gnu::always_inline]] static L reach(const Pair<L>& pair, const L&, const L&) {
+  [[gnu::always_inline]] constexpr static L reach(const Pair<L>& pair, const L&, const L&) {
     return pair.rupture;
   }
 
   /// Radius of two equal spheres with about the same bridge [m]: 2 R_a R_b / (R_a + R_b), 2 R_a at a wall.
   template <class L>
-  [[gnu::always_inline]] static L bridge_radius(const Pair<L>& pair, const L& radius_a, const L& radius_b) {
+  [[gnu::always_inline]] constexpr static L bridge_radius(const Pair<L>& pair, const L& radius_a, const L& radius_b) {
     return L(2.0) * radius_a * radius_b / max(pair.curved * radius_a + radius_b, L(tiny<L>));
   }
 
@@ -138,7 +138,8 @@ struct Capillary : LawBase {
   static constexpr double linear = 1.05, square = 2.5;
 
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
+  [[gnu::always_inline]] constexpr static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                               State<L>& state) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
     const L inverse_mass = at.inverse_mass_a + at.inverse_mass_b, none(0.0);
     state.bridge = max(state.bridge, select(at.overlap > none, L(1.0), none));
@@ -162,8 +163,9 @@ struct Capillary : LawBase {
   }
 
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
-                                               const State<L>& after, const Response<L>& response) {
+  [[gnu::always_inline]] constexpr static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                         const State<L>& before, const State<L>& after,
+                                                         const Response<L>& response) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
     if constexpr ((Features & with_damping) != 0) {

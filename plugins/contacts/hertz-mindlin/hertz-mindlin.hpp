@@ -101,12 +101,13 @@ struct HertzMindlin : LawBase {
 
   /// R* [m]; radius_b is ignored at a wall.
   template <class L>
-  [[gnu::always_inline]] static L reduced_radius(const L& a, const L& b, const L& curved) {
+  [[gnu::always_inline]] constexpr static L reduced_radius(const L& a, const L& b, const L& curved) {
     return a * b / max(curved * a + b, L(tiny<L>));
   }
 
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
+  [[gnu::always_inline]] constexpr static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                               State<L>& state) {
     const L contact_radius = sqrt(reduced_radius(at.radius_a, at.radius_b, pair.curved) * at.overlap);
     const L kn = L(2.0) * pair.modulus * contact_radius, ks = L(8.0) * pair.shear_modulus * contact_radius;
 
@@ -137,8 +138,9 @@ struct HertzMindlin : LawBase {
 
   /// Energy that springs lose as stiffness follows the contact area counts as slip.
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
-                                               const State<L>& after, const Response<L>& response) {
+  [[gnu::always_inline]] constexpr static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                         const State<L>& before, const State<L>& after,
+                                                         const Response<L>& response) {
     const L contact_radius = sqrt(reduced_radius(at.radius_a, at.radius_b, pair.curved) * at.overlap);
     const L kn = L(2.0) * pair.modulus * contact_radius, ks = L(8.0) * pair.shear_modulus * contact_radius;
     const L kept = min(L(1.0), contact_radius / max(before.contact_radius, L(tiny<L>)));

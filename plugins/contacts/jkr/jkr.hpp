@@ -104,13 +104,13 @@ struct Jkr : LawBase {
 
   /// R* [m]; radius_b is ignored at a wall.
   template <class L>
-  [[gnu::always_inline]] static L reduced_radius(const L& a, const L& b, const L& curved) {
+  [[gnu::always_inline]] constexpr static L reduced_radius(const L& a, const L& b, const L& curved) {
     return max(a * b / max(curved * a + b, L(tiny<L>)), L(tiny<L>));
   }
 
   /// Cube root to round-off, for radii from 1e-15 to 1e15 m: 1/3 = 1/4 + 1/16 + 1/64 + …, then Halley's steps.
   template <class L>
-  [[gnu::always_inline]] static L cube_root(const L& x) {
+  [[gnu::always_inline]] constexpr static L cube_root(const L& x) {
     const auto fourth = [](const L& y) { return sqrt(sqrt(y)); };
     const L first = fourth(x), second = fourth(first);
     L root = first * second * fourth(second);
@@ -127,7 +127,7 @@ struct Jkr : LawBase {
 
   /// The upper root u of u⁴ − u = depth. Newton's steps fall monotonically from a bound above the root.
   template <class L>
-  [[gnu::always_inline]] static L upper_root(const L& depth) {
+  [[gnu::always_inline]] constexpr static L upper_root(const L& depth) {
     const L d = max(depth, L(-least_depth));
     const L near = L(least_u) + sqrt((d + L(least_depth)) * L(1 / (6 * least_u * least_u)));
     const L far = sqrt(sqrt(max(d, L(0.0)))) + L(1.0);
@@ -148,25 +148,26 @@ struct Jkr : LawBase {
     L force;  ///< E* R* c² [N]; the pull-off force is 3/4 of it
   };
   template <class L>
-  [[gnu::always_inline]] static Scale<L> scale_of(const Pair<L>& pair, const L& radius_a, const L& radius_b) {
+  [[gnu::always_inline]] constexpr static Scale<L> scale_of(const Pair<L>& pair, const L& radius_a, const L& radius_b) {
     const L radius = reduced_radius(radius_a, radius_b, pair.curved);
     const L s = pair.root * cube_root(radius), width = s * s;
     return {width, width * width / radius, pair.modulus * radius * pair.adhesion * pair.adhesion};
   }
 
   template <class L>
-  [[gnu::always_inline]] static L reach(const Pair<L>& pair, const L& radius_a, const L& radius_b) {
+  [[gnu::always_inline]] constexpr static L reach(const Pair<L>& pair, const L& radius_a, const L& radius_b) {
     return L(least_depth) * scale_of(pair, radius_a, radius_b).depth;
   }
 
   template <class L>
-  [[gnu::always_inline]] static L normal_force(const Scale<L>& scale, const L& u) {
+  [[gnu::always_inline]] constexpr static L normal_force(const Scale<L>& scale, const L& u) {
     const L cube = u * u * u;
     return scale.force * cube * (L(4.0 / 3) * cube - L(2.0));
   }
 
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
+  [[gnu::always_inline]] constexpr static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                               State<L>& state) {
     const Scale<L> scale = scale_of(pair, at.radius_a, at.radius_b);
     const L u = upper_root(at.overlap / max(scale.depth, L(tiny<L>)));
     const L contact_radius = scale.width * u * u, pull_off = L(0.75) * scale.force;
@@ -194,8 +195,9 @@ struct Jkr : LawBase {
 
   /// Energy that the spring loses as stiffness follows the contact area counts as slip.
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
-                                               const State<L>& after, const Response<L>& response) {
+  [[gnu::always_inline]] constexpr static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                         const State<L>& before, const State<L>& after,
+                                                         const Response<L>& response) {
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
     if constexpr ((Features & with_damping) != 0) {
       const Scale<L> scale = scale_of(pair, at.radius_a, at.radius_b);

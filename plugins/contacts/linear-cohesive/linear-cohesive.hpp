@@ -103,18 +103,19 @@ struct LinearCohesive : LawBase {
 
   /// The tension at which a bond breaks [N].
   template <class L>
-  [[gnu::always_inline]] static L pull_off_force(const Pair<L>& pair, const L& radius_a, const L& radius_b) {
+  [[gnu::always_inline]] constexpr static L pull_off_force(const Pair<L>& pair, const L& radius_a, const L& radius_b) {
     const L radius = min(radius_a, radius_b);
     return pair.strength * radius * radius;
   }
   template <class L>
-  [[gnu::always_inline]] static L reach(const Pair<L>& pair, const L& radius_a, const L& radius_b) {
+  [[gnu::always_inline]] constexpr static L reach(const Pair<L>& pair, const L& radius_a, const L& radius_b) {
     return pull_off_force(pair, radius_a, radius_b) /
            max(spring_in_line(pair.modulus_a, radius_a, pair.modulus_b, radius_b), L(tiny<L>));
   }
 
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
+  [[gnu::always_inline]] constexpr static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                               State<L>& state) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
     state.bond = max(state.bond, select(at.overlap > L(0.0), L(1.0), L(0.0)));
 
@@ -138,8 +139,9 @@ struct LinearCohesive : LawBase {
   }
 
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
-                                               const State<L>& after, const Response<L>&) {
+  [[gnu::always_inline]] constexpr static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                         const State<L>& before, const State<L>& after,
+                                                         const Response<L>&) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
     // A change of parameters that removes a spring accounts for its energy.

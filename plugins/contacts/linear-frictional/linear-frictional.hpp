@@ -84,7 +84,8 @@ struct LinearFrictional : LawBase {
   }
 
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
+  [[gnu::always_inline]] constexpr static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                               State<L>& state) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
     const L inverse_mass = at.inverse_mass_a + at.inverse_mass_b;
 
@@ -112,8 +113,9 @@ struct LinearFrictional : LawBase {
   }
 
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
-                                               const State<L>& after, const Response<L>& response) {
+  [[gnu::always_inline]] constexpr static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                         const State<L>& before, const State<L>& after,
+                                                         const Response<L>& response) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
     if constexpr ((Features & with_damping) != 0)

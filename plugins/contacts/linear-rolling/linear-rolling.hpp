@@ -128,13 +128,14 @@ struct LinearRolling : LawBase {
 
   /// Radius in moment limits [m], multiplied by the normal force.
   template <class L>
-  [[gnu::always_inline]] static L limiting_radius(const ContactPoint<L>& at, const Pair<L>& pair) {
+  [[gnu::always_inline]] constexpr static L limiting_radius(const ContactPoint<L>& at, const Pair<L>& pair) {
     const L mean = L(0.5) * (at.radius_a + at.radius_b), smaller = min(at.radius_a, at.radius_b);
     return select(pair.smaller_radius > L(0.0), smaller, mean);
   }
 
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
+  [[gnu::always_inline]] constexpr static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                               State<L>& state) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
 
     Response<L> response;
@@ -168,7 +169,7 @@ struct LinearRolling : LawBase {
 
   /// slip_work() times twice the stiffness, from the fraction of `trial` that evaluate() keeps at `limit`.
   template <class L>
-  [[gnu::always_inline]] static L slipped(const Vec<L>& before, const Vec<L>& trial, const L& limit) {
+  [[gnu::always_inline]] constexpr static L slipped(const Vec<L>& before, const Vec<L>& trial, const L& limit) {
     const L square = dot(trial, trial), kept = min(L(1.0), limit / max(sqrt(square), L(tiny<L>)));
     const L loaded = multiply_add(before.x, trial.x, multiply_add(before.y, trial.y, before.z * trial.z));
     const L both = multiply_add(kept, square, loaded);
@@ -176,8 +177,9 @@ struct LinearRolling : LawBase {
   }
 
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
-                                               const State<L>& after, const Response<L>& response) {
+  [[gnu::always_inline]] constexpr static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair,
+                                                         const State<L>& before, const State<L>& after,
+                                                         const Response<L>& response) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
     L slid(0.0);
     if constexpr ((Features & with_shear) != 0) {

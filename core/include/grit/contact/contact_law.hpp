@@ -59,9 +59,12 @@ struct LawLoop {
 
 struct DevicePairs;
 
-/// What a device needs of a law, beside its kernel.
+/// What a device needs of a law.
 struct DeviceLaw {
   std::span<const std::byte> parameters;  ///< of pairs of materials, to be copied to the device
+  std::uint32_t materials = 0;            ///< their number
+  unsigned features = 0;                  ///< that are active, one bit each
+  std::span<const char> ptx;              ///< its kernel for GPUs, ends with 0; empty if it was compiled without nvcc
 };
 
 /// evaluate_* is called from several threads at once on disjoint chunks; all other calls come from the thread that owns

@@ -15,7 +15,7 @@ struct Turn {
   L over;           ///< 1 / (bisector · normal)
   L cosine, sine;   ///< of the rotation about the normal
 
-  [[gnu::always_inline]] Vec<L> operator()(const Vec<L>& v) const {
+  [[gnu::always_inline]] constexpr Vec<L> operator()(const Vec<L>& v) const {
     const Vec<L> carried = v - (dot(v, normal) * over) * bisector;
     return cosine * carried + sine * cross(normal, carried);
   }
@@ -35,10 +35,10 @@ struct ContactPoint {
   L dt;                              ///< time step [s]
   Turn<L> turn;                      ///< rotates vectors of the contact history to the present instant
 
-  [[gnu::always_inline]] Vec<L> tangential(const Vec<L>& v) const { return v - dot(v, normal) * normal; }
+  [[gnu::always_inline]] constexpr Vec<L> tangential(const Vec<L>& v) const { return v - dot(v, normal) * normal; }
 
   /// The limit of Response::shear [N] at which the shear force on the bodies is `friction` times `normal_force`.
-  [[gnu::always_inline]] L friction_limit(const L& friction, const L& normal_force) const {
+  [[gnu::always_inline]] constexpr L friction_limit(const L& friction, const L& normal_force) const {
     return friction * normal_force * branch_fraction;
   }
 };

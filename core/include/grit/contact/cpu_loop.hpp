@@ -22,10 +22,11 @@ namespace grit {
 namespace detail {
 
 template <class Law, unsigned Features, class L>
-[[gnu::always_inline]] inline Loss<L> losses_of(const ContactPoint<L>& at, const typename Law::template Pair<L>& pair,
-                                                const typename Law::template State<L>& before,
-                                                const typename Law::template State<L>& after,
-                                                const Response<L>& response) {
+[[gnu::always_inline]] constexpr Loss<L> losses_of(const ContactPoint<L>& at,
+                                                   const typename Law::template Pair<L>& pair,
+                                                   const typename Law::template State<L>& before,
+                                                   const typename Law::template State<L>& after,
+                                                   const Response<L>& response) {
   if constexpr (Law::traits.losses) return Law::template losses<Features>(at, pair, before, after, response);
   else return {};
 }
@@ -39,7 +40,7 @@ inline void add_losses(const Loss<L>& left, Losses& losses) {
 
 /// Parameters of contacts, one contact per lane.
 template <class Law, class L, class Index>
-[[gnu::always_inline]] inline auto load_pair(const typename Law::template Pair<double>* table, Index index) {
+[[gnu::always_inline]] constexpr auto load_pair(const typename Law::template Pair<double>* table, Index index) {
   typename Law::template Pair<L> pair;
   for (std::size_t m = 0; m < member_count<typename Law::template Pair<double>, double>; ++m) {
     const auto number = [&](std::size_t k) { return reinterpret_cast<const double*>(table + index(k))[m]; };
@@ -50,7 +51,7 @@ template <class Law, class L, class Index>
 
 /// The same where all contacts are between the same two materials.
 template <class Law, class L>
-[[gnu::always_inline]] inline auto broadcast_pair(const typename Law::template Pair<double>& numbers) {
+[[gnu::always_inline]] constexpr auto broadcast_pair(const typename Law::template Pair<double>& numbers) {
   typename Law::template Pair<L> pair;
   for (std::size_t m = 0; m < member_count<typename Law::template Pair<double>, double>; ++m)
     member<L>(pair, m) = L(reinterpret_cast<const double*>(&numbers)[m]);
@@ -61,7 +62,7 @@ template <class Law, class L>
 /// predict the order of the bodies.
 class Ahead {
  public:
-  [[gnu::always_inline]] Ahead(const PairBatch& batch, std::size_t fields) : batch_(batch), fields_(fields) {
+  [[gnu::always_inline]] constexpr Ahead(const PairBatch& batch, std::size_t fields) : batch_(batch), fields_(fields) {
     const std::size_t blocks = std::max<std::size_t>(1, batch.last_near - batch.first_block);
     share_ = (batch.next_count + blocks - 1) / blocks;
     // A cache line holds two rows.
@@ -69,7 +70,7 @@ class Ahead {
     share_ = (share_ + step_ - 1) / step_ * step_;
   }
   /// Prefetches some of the bodies, and the contact history of the block after next if it has contacts.
-  [[gnu::always_inline]] void operator()(std::size_t block) const {
+  [[gnu::always_inline]] constexpr void operator()(std::size_t block) const {
     const double* const state = batch_.state + (block + 2) * fields_ * block_size;
     if (block + 2 < batch_.last_block && batch_.touching[block + 2] != 0)
       for (std::size_t f = 0; f < fields_; ++f) __builtin_prefetch(state + f * block_size, 1);
@@ -386,7 +387,7 @@ void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>*
 /// Calls use(f) for groups of four numbers, starting at f, that cover `count` numbers; the last group may overlap the
 /// one before. No calls if count < 4.
 template <std::size_t count, class Use>
-[[gnu::always_inline]] inline void for_fours(Use use) {
+[[gnu::always_inline]] constexpr void for_fours(Use use) {
   for (std::size_t f = 0; f + 4 <= count; f += 4) use(f);
   if constexpr (count > 4 && count % 4 != 0) use(count - 4);
 }

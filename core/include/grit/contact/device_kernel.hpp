@@ -16,9 +16,9 @@ struct DevicePairKernel {
   const Parameters* parameters;  ///< [material of a][material of b]
   std::uint32_t materials;
 
-  void operator()(std::uint32_t own) const {
+  constexpr void operator()(std::uint32_t own) const {
     using detail::member;
-    constexpr auto& kept = detail::kept_fields<Law, Features>;
+    constexpr auto kept = detail::kept_fields<Law, Features>;
     const detail::PairStep<double> step(in.dt, in.again);
     Vec<double> force{}, moment{};
     double deepest = 0;
@@ -58,7 +58,33 @@ struct DevicePairKernel {
   }
 
  private:
-  static RowLanes<double> row(const Row& row) { return {row.x, row.y, row.z, row.w}; }
+  static constexpr RowLanes<double> row(const Row& row) { return {row.x, row.y, row.z, row.w}; }
 };
+
+#if defined(__CUDACC__)
+namespace detail {
+
+/// Runs the kernel of one body with these features.
+template <class Law, unsigned F = 0>
+__device__ void evaluate_with(unsigned features, const DevicePairs& pairs,
+                              const typename Law::template Pair<double>* parameters, std::uint32_t materials,
+                              std::uint32_t body) {
+  if constexpr (F < (1u << feature_count<Law>)) {
+    if constexpr (F == with_prerequisites<Law>(F))
+      if (F == features) return DevicePairKernel<Law, F>{pairs, parameters, materials}(body);
+    evaluate_with<Law, F + 1>(features, pairs, parameters, materials, body);
+  }
+}
+
+/// What a GPU runs, a thread for each body.
+template <class Law>
+__global__ void pairs_on_gpu(DevicePairs pairs, const typename Law::template Pair<double>* parameters,
+                             std::uint32_t materials, unsigned features, std::uint32_t bodies) {
+  const std::uint32_t body = blockIdx.x * blockDim.x + threadIdx.x;
+  if (body < bodies) evaluate_with<Law>(features, pairs, parameters, materials, body);
+}
+
+}  // namespace detail
+#endif
 
 }  // namespace grit

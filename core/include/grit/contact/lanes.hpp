@@ -37,37 +37,55 @@ struct Pack {
   /// All bits of a lane set, or none.
   struct Mask {
     Bits bits;
-    [[gnu::always_inline]] friend Mask operator!(const Mask& m) { return {~m.bits}; }
-    [[gnu::always_inline]] friend Mask operator&&(const Mask& a, const Mask& b) { return {a.bits & b.bits}; }
-    [[gnu::always_inline]] friend Mask operator||(const Mask& a, const Mask& b) { return {a.bits | b.bits}; }
+    [[gnu::always_inline]] constexpr friend Mask operator!(const Mask& m) { return {~m.bits}; }
+    [[gnu::always_inline]] constexpr friend Mask operator&&(const Mask& a, const Mask& b) { return {a.bits & b.bits}; }
+    [[gnu::always_inline]] constexpr friend Mask operator||(const Mask& a, const Mask& b) { return {a.bits | b.bits}; }
   };
 
   Numbers numbers;
 
   Pack() = default;
-  [[gnu::always_inline]] Pack(double all)
+  [[gnu::always_inline]] constexpr Pack(double all)
       : numbers(static_cast<Real>(all) - Numbers{}) {}  // x - 0 broadcasts x and is optimised away
-  [[gnu::always_inline]] explicit Pack(Numbers all) : numbers(all) {}
+  [[gnu::always_inline]] constexpr explicit Pack(Numbers all) : numbers(all) {}
   /// Lane k is number(k).
   template <class Number>
   requires requires(Number number) { number(std::size_t{}); }
-  [[gnu::always_inline]] explicit Pack(Number number) {
+  [[gnu::always_inline]] constexpr explicit Pack(Number number) {
     for (std::size_t k = 0; k < N; ++k) numbers[k] = static_cast<Real>(number(k));
   }
 
   static constexpr std::size_t size() { return N; }
-  [[gnu::always_inline]] Real operator[](std::size_t k) const { return numbers[k]; }
+  [[gnu::always_inline]] constexpr Real operator[](std::size_t k) const { return numbers[k]; }
 
-  [[gnu::always_inline]] friend Pack operator-(const Pack& a) { return Pack(-a.numbers); }
-  [[gnu::always_inline]] friend Pack operator+(const Pack& a, const Pack& b) { return Pack(a.numbers + b.numbers); }
-  [[gnu::always_inline]] friend Pack operator-(const Pack& a, const Pack& b) { return Pack(a.numbers - b.numbers); }
-  [[gnu::always_inline]] friend Pack operator*(const Pack& a, const Pack& b) { return Pack(a.numbers * b.numbers); }
-  [[gnu::always_inline]] friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.numbers / b.numbers); }
-  [[gnu::always_inline]] friend Mask operator<(const Pack& a, const Pack& b) { return {a.numbers < b.numbers}; }
-  [[gnu::always_inline]] friend Mask operator>(const Pack& a, const Pack& b) { return {a.numbers > b.numbers}; }
-  [[gnu::always_inline]] friend Mask operator<=(const Pack& a, const Pack& b) { return {a.numbers <= b.numbers}; }
-  [[gnu::always_inline]] friend Mask operator>=(const Pack& a, const Pack& b) { return {a.numbers >= b.numbers}; }
-  [[gnu::always_inline]] friend Mask operator==(const Pack& a, const Pack& b) { return {a.numbers == b.numbers}; }
+  [[gnu::always_inline]] constexpr friend Pack operator-(const Pack& a) { return Pack(-a.numbers); }
+  [[gnu::always_inline]] constexpr friend Pack operator+(const Pack& a, const Pack& b) {
+    return Pack(a.numbers + b.numbers);
+  }
+  [[gnu::always_inline]] constexpr friend Pack operator-(const Pack& a, const Pack& b) {
+    return Pack(a.numbers - b.numbers);
+  }
+  [[gnu::always_inline]] constexpr friend Pack operator*(const Pack& a, const Pack& b) {
+    return Pack(a.numbers * b.numbers);
+  }
+  [[gnu::always_inline]] constexpr friend Pack operator/(const Pack& a, const Pack& b) {
+    return Pack(a.numbers / b.numbers);
+  }
+  [[gnu::always_inline]] constexpr friend Mask operator<(const Pack& a, const Pack& b) {
+    return {a.numbers < b.numbers};
+  }
+  [[gnu::always_inline]] constexpr friend Mask operator>(const Pack& a, const Pack& b) {
+    return {a.numbers > b.numbers};
+  }
+  [[gnu::always_inline]] constexpr friend Mask operator<=(const Pack& a, const Pack& b) {
+    return {a.numbers <= b.numbers};
+  }
+  [[gnu::always_inline]] constexpr friend Mask operator>=(const Pack& a, const Pack& b) {
+    return {a.numbers >= b.numbers};
+  }
+  [[gnu::always_inline]] constexpr friend Mask operator==(const Pack& a, const Pack& b) {
+    return {a.numbers == b.numbers};
+  }
 };
 
 /// As many doubles as a register holds.
@@ -122,30 +140,30 @@ inline constexpr double beyond_rounding = is_single<L> ? 1e-5 : 1e-12;
 static_assert(block_size % lane_width<Lane> == 0 && block_size % lane_width<SingleLane> == 0);
 
 // Branch of a law, lane by lane. Both sides are evaluated.
-[[gnu::always_inline]] inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
-[[gnu::always_inline]] inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
+[[gnu::always_inline]] constexpr double select(bool condition, double yes, double no) { return condition ? yes : no; }
+[[gnu::always_inline]] constexpr float select(bool condition, float yes, float no) { return condition ? yes : no; }
 template <std::size_t N, class Real>
-[[gnu::always_inline]] inline Pack<N, Real> select(const typename LaneTraits<Pack<N, Real>>::Mask& condition,
-                                                   const Pack<N, Real>& yes, const Pack<N, Real>& no) {
+[[gnu::always_inline]] constexpr Pack<N, Real> select(const typename LaneTraits<Pack<N, Real>>::Mask& condition,
+                                                      const Pack<N, Real>& yes, const Pack<N, Real>& no) {
   return Pack<N, Real>(condition.bits ? yes.numbers : no.numbers);
 }
 template <class L>
-[[gnu::always_inline]] inline Vec<L> select(const typename LaneTraits<L>::Mask& condition, const Vec<L>& yes,
-                                            const Vec<L>& no) {
+[[gnu::always_inline]] constexpr Vec<L> select(const typename LaneTraits<L>::Mask& condition, const Vec<L>& yes,
+                                               const Vec<L>& no) {
   return {select(condition, yes.x, no.x), select(condition, yes.y, no.y), select(condition, yes.z, no.z)};
 }
 
-[[gnu::always_inline]] inline double sqrt(double a) { return std::sqrt(a); }
-[[gnu::always_inline]] inline double abs(double a) { return std::abs(a); }
-[[gnu::always_inline]] inline double min(double a, double b) { return b < a ? b : a; }
-[[gnu::always_inline]] inline double max(double a, double b) { return a < b ? b : a; }
-[[gnu::always_inline]] inline float sqrt(float a) { return std::sqrt(a); }
-[[gnu::always_inline]] inline float abs(float a) { return std::abs(a); }
-[[gnu::always_inline]] inline float min(float a, float b) { return b < a ? b : a; }
-[[gnu::always_inline]] inline float max(float a, float b) { return a < b ? b : a; }
+[[gnu::always_inline]] constexpr double sqrt(double a) { return std::sqrt(a); }
+[[gnu::always_inline]] constexpr double abs(double a) { return std::abs(a); }
+[[gnu::always_inline]] constexpr double min(double a, double b) { return b < a ? b : a; }
+[[gnu::always_inline]] constexpr double max(double a, double b) { return a < b ? b : a; }
+[[gnu::always_inline]] constexpr float sqrt(float a) { return std::sqrt(a); }
+[[gnu::always_inline]] constexpr float abs(float a) { return std::abs(a); }
+[[gnu::always_inline]] constexpr float min(float a, float b) { return b < a ? b : a; }
+[[gnu::always_inline]] constexpr float max(float a, float b) { return a < b ? b : a; }
 
 template <std::size_t N, class Real>
-[[gnu::always_inline]] inline Pack<N, Real> sqrt(const Pack<N, Real>& a) {
+[[gnu::always_inline]] constexpr Pack<N, Real> sqrt(const Pack<N, Real>& a) {
   using P = Pack<N, Real>;
 #if defined(__AVX512F__)
   if constexpr (std::is_same_v<P, Pack<8>>) return P(_mm512_sqrt_pd(a.numbers));
@@ -162,13 +180,13 @@ template <std::size_t N, class Real>
   return P([&](std::size_t k) { return std::sqrt(a.numbers[k]); });
 }
 template <std::size_t N, class Real>
-[[gnu::always_inline]] inline Pack<N, Real> abs(const Pack<N, Real>& a) {
+[[gnu::always_inline]] constexpr Pack<N, Real> abs(const Pack<N, Real>& a) {
   using Bits = typename Pack<N, Real>::Bits;
   constexpr auto all_but_sign = std::numeric_limits<typename Pack<N, Real>::Bit>::max();
   return Pack<N, Real>((typename Pack<N, Real>::Numbers)((Bits)a.numbers & (all_but_sign - Bits{})));
 }
 template <std::size_t N, class Real>
-[[gnu::always_inline]] inline Pack<N, Real> min(const Pack<N, Real>& a, const Pack<N, Real>& b) {
+[[gnu::always_inline]] constexpr Pack<N, Real> min(const Pack<N, Real>& a, const Pack<N, Real>& b) {
   using P = Pack<N, Real>;
 #if defined(__AVX512F__)
   if constexpr (std::is_same_v<P, Pack<8>>) return P(_mm512_min_pd(b.numbers, a.numbers));
@@ -184,7 +202,7 @@ template <std::size_t N, class Real>
   return P(b.numbers < a.numbers ? b.numbers : a.numbers);
 }
 template <std::size_t N, class Real>
-[[gnu::always_inline]] inline Pack<N, Real> max(const Pack<N, Real>& a, const Pack<N, Real>& b) {
+[[gnu::always_inline]] constexpr Pack<N, Real> max(const Pack<N, Real>& a, const Pack<N, Real>& b) {
   using P = Pack<N, Real>;
 #if defined(__AVX512F__)
   if constexpr (std::is_same_v<P, Pack<8>>) return P(_mm512_max_pd(b.numbers, a.numbers));
@@ -202,42 +220,42 @@ template <std::size_t N, class Real>
 
 /// a b + c, fused where the processor can. Use it only for energies: sums of products in forces are rounded term by
 /// term.
-[[gnu::always_inline]] inline double multiply_add(double a, double b, double c) { return a * b + c; }
-[[gnu::always_inline]] inline float multiply_add(float a, float b, float c) { return a * b + c; }
+[[gnu::always_inline]] constexpr double multiply_add(double a, double b, double c) { return a * b + c; }
+[[gnu::always_inline]] constexpr float multiply_add(float a, float b, float c) { return a * b + c; }
 template <std::size_t N, class Real>
-[[gnu::always_inline]] inline Pack<N, Real> multiply_add(const Pack<N, Real>& a, const Pack<N, Real>& b,
-                                                         const Pack<N, Real>& c) {
+[[gnu::always_inline]] constexpr Pack<N, Real> multiply_add(const Pack<N, Real>& a, const Pack<N, Real>& b,
+                                                            const Pack<N, Real>& c) {
   return Pack<N, Real>(a.numbers * b.numbers + c.numbers);
 }
 
 /// The same lanes in the precision of L, rounded to nearest if that is lower.
 template <class L>
-[[gnu::always_inline]] inline L in_precision(const Wide<L>& lanes) {
+[[gnu::always_inline]] constexpr L in_precision(const Wide<L>& lanes) {
   if constexpr (std::is_same_v<L, Wide<L>>) return lanes;
   else if constexpr (lane_width<L> == 1) return static_cast<L>(lanes);
   else return L(__builtin_convertvector(lanes.numbers, typename L::Numbers));
 }
 template <class L>
-[[gnu::always_inline]] inline Vec<L> in_precision(const Vec<Wide<L>>& v) {
+[[gnu::always_inline]] constexpr Vec<L> in_precision(const Vec<Wide<L>>& v) {
   return {in_precision<L>(v.x), in_precision<L>(v.y), in_precision<L>(v.z)};
 }
 template <class L>
-[[gnu::always_inline]] inline auto mask_in_precision(const typename LaneTraits<Wide<L>>::Mask& mask) {
+[[gnu::always_inline]] constexpr auto mask_in_precision(const typename LaneTraits<Wide<L>>::Mask& mask) {
   if constexpr (std::is_same_v<L, Wide<L>> || lane_width<L> == 1) return mask;
   else return typename L::Mask{__builtin_convertvector(mask.bits, typename L::Bits)};
 }
 /// The same lanes in double precision, exactly.
 template <class L>
-[[gnu::always_inline]] inline Wide<L> widened(const L& lanes) {
+[[gnu::always_inline]] constexpr Wide<L> widened(const L& lanes) {
   if constexpr (std::is_same_v<L, Wide<L>> || lane_width<L> == 1) return lanes;
   else return Wide<L>(__builtin_convertvector(lanes.numbers, typename Wide<L>::Numbers));
 }
 
 namespace detail {
 
-[[gnu::always_inline]] inline std::uint32_t bits(bool mask) { return mask; }
+[[gnu::always_inline]] constexpr std::uint32_t bits(bool mask) { return mask; }
 template <class Mask>
-[[gnu::always_inline]] inline std::uint32_t bits(const Mask& mask) {
+[[gnu::always_inline]] constexpr std::uint32_t bits(const Mask& mask) {
   constexpr std::size_t lane_bytes = sizeof mask.bits[0], width = sizeof mask.bits / lane_bytes;
 #if defined(__AVX512DQ__)
   if constexpr (lane_bytes == 8 && width == 8) return _mm512_movepi64_mask((__m512i)mask.bits);
@@ -266,17 +284,17 @@ template <class Mask>
 
 /// The even, or odd, lanes of two registers of eight numbers, in turn.
 template <class Numbers>
-[[gnu::always_inline]] inline Numbers even_lanes(const Numbers& a, const Numbers& b) {
+[[gnu::always_inline]] constexpr Numbers even_lanes(const Numbers& a, const Numbers& b) {
   return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
 }
 template <class Numbers>
-[[gnu::always_inline]] inline Numbers odd_lanes(const Numbers& a, const Numbers& b) {
+[[gnu::always_inline]] constexpr Numbers odd_lanes(const Numbers& a, const Numbers& b) {
   return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
 }
 
 /// Loads lanes in the precision of L from doubles in memory, and stores them.
 template <class L>
-[[gnu::always_inline]] inline L load_lanes(const double* from) {
+[[gnu::always_inline]] constexpr L load_lanes(const double* from) {
   if constexpr (lane_width<L> == 1) return static_cast<L>(*from);
   else {
     typename Wide<L>::Numbers numbers;
@@ -285,24 +303,24 @@ template <class L>
   }
 }
 template <class L>
-[[gnu::always_inline]] inline void store_lanes(const L& value, double* to) {
+[[gnu::always_inline]] constexpr void store_lanes(const L& value, double* to) {
   const Wide<L> wide = widened(value);
   std::memcpy(to, &wide, sizeof wide);
 }
 
 /// Lane k is number(k).
 template <class L, class Number>
-[[gnu::always_inline]] inline L gather_lanes(Number number) {
+[[gnu::always_inline]] constexpr L gather_lanes(Number number) {
   if constexpr (lane_width<L> == 1) return static_cast<L>(number(0));
   else return L([&](std::size_t k) { return number(k); });
 }
 template <class L>
-[[gnu::always_inline]] inline double lane(const L& lanes, std::size_t k) {
+[[gnu::always_inline]] constexpr double lane(const L& lanes, std::size_t k) {
   if constexpr (lane_width<L> == 1) return lanes;
   else return lanes[k];
 }
 template <class L>
-[[gnu::always_inline]] inline double largest(const L& lanes) {
+[[gnu::always_inline]] constexpr double largest(const L& lanes) {
   if constexpr (lane_width<L> == 1) return lanes;
   else {
     L most = lanes;
@@ -312,7 +330,7 @@ template <class L>
   }
 }
 template <class L>
-[[gnu::always_inline]] inline double total(const L& lanes) {
+[[gnu::always_inline]] constexpr double total(const L& lanes) {
   if constexpr (lane_width<L> == 1) return lanes;
   else {
     L sum = lanes;
@@ -323,7 +341,7 @@ template <class L>
 }
 
 template <class L>
-[[gnu::always_inline]] inline double smallest(const L& lanes) {
+[[gnu::always_inline]] constexpr double smallest(const L& lanes) {
   return -largest(L(-lanes));
 }
 
@@ -333,12 +351,12 @@ template <class L>
 template <class L>
 struct RowLanes {
   L x, y, z, w;
-  [[gnu::always_inline]] Vec<L> xyz() const { return {x, y, z}; }
+  [[gnu::always_inline]] constexpr Vec<L> xyz() const { return {x, y, z}; }
 };
 
 /// Loads four numbers from each `address(k)`, k = 0 … width − 1, one row per lane.
 template <class L, class Address>
-[[gnu::always_inline]] inline RowLanes<L> load_fours(Address address) {
+[[gnu::always_inline]] constexpr RowLanes<L> load_fours(Address address) {
   constexpr std::size_t width = lane_width<L>;
   const auto load = [&](std::size_t k) {
     Quad quad;
@@ -379,13 +397,13 @@ template <class L, class Address>
 
 /// Loads the rows `base[index(k)]`.
 template <class L, class Index>
-[[gnu::always_inline]] inline RowLanes<L> load_rows(const Row* base, Index index) {
+[[gnu::always_inline]] constexpr RowLanes<L> load_rows(const Row* base, Index index) {
   return load_fours<L>([&](std::size_t k) { return &base[index(k)].x; });
 }
 
 /// The inverse of load_rows: calls `store(k, quad)` with the numbers of row k.
 template <class L, class Store>
-[[gnu::always_inline]] inline void store_rows(const L& x, const L& y, const L& z, const L& w, Store store) {
+[[gnu::always_inline]] constexpr void store_rows(const L& x, const L& y, const L& z, const L& w, Store store) {
   constexpr std::size_t width = lane_width<L>;
   const auto four = [&](std::size_t first, Quad r0, Quad r1, Quad r2, Quad r3) __attribute__((always_inline)) {
     detail::transpose(r0, r1, r2, r3);

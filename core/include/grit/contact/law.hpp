@@ -17,17 +17,18 @@
 //         {.name = "shear", .unit = "N", .doc = "spring force on b", .width = 3, .swap = -1, .needed_by = with_shear}};
 //
 //     template <unsigned Features, class L> [[gnu::always_inline]]
-//     static Response<L> evaluate(const ContactPoint<L>&, const Pair<L>&, State<L>&);
+//     static constexpr Response<L> evaluate(const ContactPoint<L>&, const Pair<L>&, State<L>&);
 //     template <unsigned Features, class L> [[gnu::always_inline]]
-//     static Loss<L> losses(const ContactPoint<L>&, const Pair<L>&, const State<L>& before, const State<L>& after,
+//     static constexpr Loss<L> losses(const ContactPoint<L>&, const Pair<L>&, const State<L>& before, const State<L>& after,
 //                           const Response<L>&);
 //     template <class L>                                           // with traits.reach
-//     static L reach(const Pair<L>&, const L& radius_a, const L& radius_b);
+//     static constexpr L reach(const Pair<L>&, const L& radius_a, const L& radius_b);
 //     static Stiffness stiffness(const PairSize&, const Pair<double>&);
 //     static ElasticEnergy energy(const PairSize&, const Pair<double>&, const State<double>&);
 //   };
 //
 // mix() combines two materials; with `wall`, b is the material of a wall.
+// evaluate() and reach() are constexpr, and call only functions that are: nvcc compiles them for GPUs, too.
 // L is a lane: a register of doubles or floats, or one double. Therefore the only branches in evaluate() and losses()
 // are `if constexpr ((Features & with_shear) != 0)`; otherwise use select(), min(), max(), sqrt() and abs(). Both are
 // also called for lanes that are not in contact. Their results are discarded, but they must not trap. Fields that no

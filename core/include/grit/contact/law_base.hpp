@@ -44,36 +44,36 @@ struct LawBase {
   static constexpr double degree = grit::degree;
 
   template <class Mask, class T>
-  [[gnu::always_inline]] static T select(const Mask& condition, const T& yes, const T& no) {
+  [[gnu::always_inline]] constexpr static T select(const Mask& condition, const T& yes, const T& no) {
     return grit::select(condition, yes, no);
   }
   template <class L>
-  [[gnu::always_inline]] static L sqrt(const L& a) {
+  [[gnu::always_inline]] constexpr static L sqrt(const L& a) {
     return grit::sqrt(a);
   }
   template <class L>
-  [[gnu::always_inline]] static L abs(const L& a) {
+  [[gnu::always_inline]] constexpr static L abs(const L& a) {
     return grit::abs(a);
   }
   template <class L>
-  [[gnu::always_inline]] static L min(const L& a, const L& b) {
+  [[gnu::always_inline]] constexpr static L min(const L& a, const L& b) {
     return grit::min(a, b);
   }
   template <class L>
-  [[gnu::always_inline]] static L max(const L& a, const L& b) {
+  [[gnu::always_inline]] constexpr static L max(const L& a, const L& b) {
     return grit::max(a, b);
   }
   template <class L>
-  [[gnu::always_inline]] static L multiply_add(const L& a, const L& b, const L& c) {
+  [[gnu::always_inline]] constexpr static L multiply_add(const L& a, const L& b, const L& c) {
     return grit::multiply_add(a, b, c);
   }
   template <class L>
-  [[gnu::always_inline]] static L spring_in_line(const L& modulus_a, const L& radius_a, const L& modulus_b,
-                                                 const L& radius_b) {
+  [[gnu::always_inline]] constexpr static L spring_in_line(const L& modulus_a, const L& radius_a, const L& modulus_b,
+                                                           const L& radius_b) {
     return grit::spring_in_line(modulus_a, radius_a, modulus_b, radius_b);
   }
   template <class L>
-  [[gnu::always_inline]] static L dashpot(const L& ratio, const L& stiffness, const L& inverse_mass) {
+  [[gnu::always_inline]] constexpr static L dashpot(const L& ratio, const L& stiffness, const L& inverse_mass) {
     return grit::dashpot(ratio, stiffness, inverse_mass);
   }
   static double spring_energy(double square, double stiffness) { return grit::spring_energy(square, stiffness); }

@@ -12,7 +12,7 @@ namespace grit::detail {
 
 /// Member `i` of a struct that consists of lanes. (std::bit_cast was measured to copy through memory.)
 template <class L, class Members>
-[[gnu::always_inline]] inline L& member(Members& members, std::size_t i) {
+[[gnu::always_inline]] constexpr L& member(Members& members, std::size_t i) {
   static_assert((std::is_empty_v<Members> || sizeof(Members) % sizeof(L) == 0) &&
                 std::is_trivially_copyable_v<Members>);
   return reinterpret_cast<L*>(&members)[i];

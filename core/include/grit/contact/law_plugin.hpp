@@ -12,6 +12,10 @@
 #include "grit/contact/law.hpp"
 #include "grit/plugin.hpp"
 
+/// The kernel for GPUs, which grit_plugin() of CMake adds to a plugin where nvcc is; else both are null.
+extern "C" [[gnu::weak, gnu::visibility("hidden")]] const char grit_ptx[];
+extern "C" [[gnu::weak, gnu::visibility("hidden")]] const char grit_ptx_end[];
+
 namespace grit {
 
 /// The ContactLaw that the kernel calls, made from the struct of a law.
@@ -84,7 +88,10 @@ class LawPlugin final : public ContactLaw {
   }
   std::optional<DeviceLaw> device() const override {
     if (single()) return {};
-    return DeviceLaw{std::as_bytes(std::span(table_))};
+    return DeviceLaw{.parameters = std::as_bytes(std::span(table_)),
+                     .materials = static_cast<std::uint32_t>(count_),
+                     .features = features_,
+                     .ptx = {grit_ptx, grit_ptx_end}};
   }
   void evaluate_device_pairs(const DevicePairs& pairs, const void* parameters, std::uint32_t first,
                              std::uint32_t last) const override {
@@ -179,6 +186,9 @@ template <class Law>
 PluginInfo contact_law_plugin(const char* name, const char* version, const char* doc,
                               const BuildTag& tag = build_tag()) {
   static_assert(check_law<Law>());
+#if defined(__CUDACC__)
+  [[maybe_unused]] const auto on_gpu = &detail::pairs_on_gpu<Law>;  // compiles it
+#endif
   PluginInfo info{.tag = tag};
   info.kind = "contact", info.name = name, info.version = version, info.doc = doc;
   if constexpr (LawDefinition<Law>) info.make_contact = []() -> ContactLaw* { return new LawPlugin<Law>; };

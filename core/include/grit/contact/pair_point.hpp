@@ -9,7 +9,7 @@ namespace grit::detail {
 
 /// The reciprocals of both. In double precision one division is faster; in single precision it would lose digits.
 template <class L>
-[[gnu::always_inline]] inline std::pair<L, L> inverses(const L& a, const L& b) {
+[[gnu::always_inline]] constexpr std::pair<L, L> inverses(const L& a, const L& b) {
   if constexpr (is_single<L>) return {L(1.0) / a, L(1.0) / b};
   const L of_product = L(1.0) / (a * b);
   return {of_product * b, of_product * a};
@@ -17,8 +17,8 @@ template <class L>
 
 /// `turns` is 1, or 0 to omit the change of normal.
 template <class L>
-[[gnu::always_inline]] inline Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a,
-                                                const Vec<L>& spin_b, double dt, const L& turns) {
+[[gnu::always_inline]] constexpr Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a,
+                                                   const Vec<L>& spin_b, double dt, const L& turns) {
   Turn<L> turn;
   turn.normal = normal;
   turn.bisector = normal + before;
@@ -39,7 +39,7 @@ struct PairStep {
   double history_dt;  ///< by which contact histories advance [s]; 0 if they already include this step
   L turns;            ///< as in make_turn()
 
-  [[gnu::always_inline]] PairStep(double step, bool again)
+  [[gnu::always_inline]] constexpr PairStep(double step, bool again)
       : dt(static_cast<typename LaneTraits<L>::Number>(step)),
         per_dt(static_cast<typename LaneTraits<L>::Number>(step > 0 ? 1 / step : 0.0)),
         history_dt(again ? 0 : step),
@@ -56,11 +56,11 @@ struct PairPoint {
 /// `between`, `apart`: position and velocity of b less those of a, across a periodic boundary if there is one; `square`
 /// of the former. Rows as in PairBatch. `Reach`: whether overlaps may be negative.
 template <bool Reach, class L>
-[[gnu::always_inline]] inline PairPoint<L> pair_point(const Vec<Wide<L>>& between, const Vec<Wide<L>>& apart,
-                                                      const Wide<L>& square, const RowLanes<Wide<L>>& pa,
-                                                      const RowLanes<Wide<L>>& pb, const RowLanes<Wide<L>>& va,
-                                                      const RowLanes<Wide<L>>& vb, const RowLanes<Wide<L>>& wa,
-                                                      const RowLanes<Wide<L>>& wb, const PairStep<L>& step) {
+[[gnu::always_inline]] constexpr PairPoint<L> pair_point(const Vec<Wide<L>>& between, const Vec<Wide<L>>& apart,
+                                                         const Wide<L>& square, const RowLanes<Wide<L>>& pa,
+                                                         const RowLanes<Wide<L>>& pb, const RowLanes<Wide<L>>& va,
+                                                         const RowLanes<Wide<L>>& vb, const RowLanes<Wide<L>>& wa,
+                                                         const RowLanes<Wide<L>>& wb, const PairStep<L>& step) {
   const Wide<L> radii = pa.w + pb.w;
   const L reach = in_precision<L>(radii);
   const Vec<L> branch = in_precision<L>(between), velocity = in_precision<L>(apart);
@@ -103,7 +103,7 @@ template <bool Reach, class L>
 
 /// The largest overlap over the smaller radius.
 template <class L>
-[[gnu::always_inline]] inline L relative_overlap(const ContactPoint<L>& at) {
+[[gnu::always_inline]] constexpr L relative_overlap(const ContactPoint<L>& at) {
   return at.overlap / max(min(at.radius_a, at.radius_b), L(tiny<L>));
 }
 
@@ -115,8 +115,8 @@ struct PairForces {
 
 /// Zero in lanes that are not in `contacts`.
 template <class L>
-[[gnu::always_inline]] inline PairForces<L> pair_forces(const PairPoint<L>& point, const Response<L>& response,
-                                                        const typename LaneTraits<L>::Mask& contacts) {
+[[gnu::always_inline]] constexpr PairForces<L> pair_forces(const PairPoint<L>& point, const Response<L>& response,
+                                                           const typename LaneTraits<L>::Mask& contacts) {
   const ContactPoint<L>& at = point.at;
   const Vec<L> none{L(0.0), L(0.0), L(0.0)};
   // The shear spring acts on surfaces at the sum of the radii from each other. Centres that are nearer move less than
