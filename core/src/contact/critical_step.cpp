@@ -103,7 +103,7 @@ struct Symmetric {
 };
 /// n n.
 Symmetric square_of(const Vec3& n) {
-  return {{n.x() * n.x(), n.y() * n.y(), n.z() * n.z(), 0}, {n.x() * n.y(), n.x() * n.z(), n.y() * n.z(), 0}};
+  return {Quad{n.x() * n.x(), n.y() * n.y(), n.z() * n.z(), 0}, Quad{n.x() * n.y(), n.x() * n.z(), n.y() * n.z(), 0}};
 }
 
 double sum_of(const Quad& q) { return q[0] + q[1] + q[2]; }
