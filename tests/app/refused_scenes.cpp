@@ -40,6 +40,9 @@ TEST(Descriptions, AreRefusedForAveragesOverTooManyCells) {
       EXPECT_FALSE(std::filesystem::exists(folder.path() / "results")) << does << type;
     }
     EXPECT_EQ(done("check", type, {"/probes/cells/cell_step=5.1"}).status, 0) << type;
+    const auto infinite = done("check", type, {"/probes/cells/region_high=[1e300, 1e300, 1e300]"});
+    EXPECT_EQ(infinite.status, 2) << type;
+    EXPECT_THAT(infinite.err, HasSubstr("or a smaller region")) << type;
   }
   EXPECT_EQ(done("check", "stress", {"/probes/cells/frames=false"}).status, 0) << "its channels need no cells";
   EXPECT_EQ(done("check", "stress", {"/output/frames=null"}).status, 0);
