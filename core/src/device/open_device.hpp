@@ -11,7 +11,7 @@ namespace grit {
 
 /// Whether this build has the component for GPUs.
 bool has_gpu_component();
-/// `team`: threads of an emulated device, which must live as long. Throws Error if there is no such device.
+/// `team`: threads of an emulated device, which must live as long. Throws FileError if there is no such device.
 std::unique_ptr<Device> open_device(DeviceKind kind, Team& team);
 
 }  // namespace grit

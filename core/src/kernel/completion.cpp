@@ -32,7 +32,7 @@ void complete_bodies(State& state, Passes& passes) {
   state.complete.bodies = state.complete.identities = true;
 }
 
-void bring_bodies(State& state, Passes& passes) {
+void fetch_bodies(State& state, Passes& passes) {
   if (state.device) complete_bodies(state, passes);
 }
 

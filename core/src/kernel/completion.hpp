@@ -11,7 +11,7 @@ void take_halo(State& state, Passes& passes);
 /// Completes the bodies if those of other ranks, or on a device, have moved; all ranks must call this.
 void complete_bodies(State& state, Passes& passes);
 /// The same if a device has moved them; this may be called on one rank only.
-void bring_bodies(State& state, Passes& passes);
+void fetch_bodies(State& state, Passes& passes);
 /// The same of the sums of contact forces.
 void complete_sums(State& state, Passes& passes);
 

@@ -92,7 +92,7 @@ void DisplacementBounds::advance(State& state, Passes& passes) {
   const auto [overlap, fastest, gone, finite] = passes.extremes();
   rate_ = state.bodies.count() > 0 ? fastest / state.statistics.smallest_radius : 0;
   if (!finite || dt * rate_ > harmless(state)) {
-    bring_bodies(state, passes);
+    fetch_bodies(state, passes);
     rate_ = rate_of_bodies(state, passes);
   }
   const double rate_of_bodies_alone = rate_;

@@ -137,7 +137,7 @@ void Kernel::change(const SceneDescription& scene, const Components& components)
 
 void Kernel::apply(const SceneDescription& scene, const Components& components) {
   complete_bodies(state_, passes_);
-  stepper_.bring_home();
+  stepper_.fetch_from_device();
   const Settings before = state_.settings;
   balance_.book_elastic([&] { take_settings(scene, components); });
   const auto kinetic = [this] {

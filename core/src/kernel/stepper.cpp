@@ -177,7 +177,7 @@ void Stepper::follow_bodies() {
     const bool at_walls = state_.lists.due_at_walls();
     const auto [may_search, may_renew] =
         ranks.any(std::array{state_.lists.may_be_due(ranks), !at_walls && time_step_.due(state_, passes_)});
-    if (may_search) bring_bodies(state_, passes_);
+    if (may_search) fetch_bodies(state_, passes_);
     search = may_search && state_.lists.due(state_.bodies, state_.cell, ranks), renew = may_renew;
     if (!search && at_walls) {
       search_at_walls();
@@ -186,7 +186,7 @@ void Stepper::follow_bodies() {
   }
   if (search || renew || time_step_.requested()) {
     take_halo(state_, passes_);
-    bring_home();
+    fetch_from_device();
   }
   if (search) rebuild();
   else time_step_.follow(renew, state_, view_, bounds_, passes_);
@@ -294,7 +294,7 @@ void Stepper::find_extremes() {
 
 void Stepper::take_loads(bool for_time_step) {
   find_extremes();
-  if (passes_.extremes().overlap > state_.settings.guards.overlap) bring_home();  // for the report
+  if (passes_.extremes().overlap > state_.settings.guards.overlap) fetch_from_device();  // for the report
   if (!state_.surfaces.empty()) {
     state_.wall_contacts.loads(loads_, passes_.ranks());
     state_.walls.clear_forces();
@@ -309,7 +309,7 @@ void Stepper::take_loads(bool for_time_step) {
 
 void Stepper::find_forces() {
   const bool may_stiffen = time_step_.may_stiffen(state_, bounds_);
-  bring_home();
+  fetch_from_device();
   prepare();
   send_to_device();  // before histories advance here
   sum_forces(evaluated_before());
@@ -459,7 +459,7 @@ void Stepper::step_on() {
   and_show_forces([this] { take_loads(true), end_step(); });
 }
 
-void Stepper::bring_home() {
+void Stepper::fetch_from_device() {
   if (!device_is_ahead_) return;
   complete_bodies(state_, passes_);
   state_.device->fetch(state_.pairs);
@@ -469,7 +469,7 @@ void Stepper::bring_home() {
 
 std::optional<ContactTable> Stepper::recall() {
   if (!state_.device || state_.device->requested()) return {};
-  bring_home();
+  fetch_from_device();
   if (forces_step_ != state_.time.step || state_.device->advanced()) return {};
   ContactTable evaluated = state_.pairs;
   state_.device->fetch(state_.pairs);
@@ -517,7 +517,7 @@ void Stepper::bodies_moved() {
 }
 
 void Stepper::show_forces() {
-  bring_home();
+  fetch_from_device();
   state_.added_force.clear(), state_.added_moment.clear();
   if (passes_.extremes().finite) {
     update_surfaces();

@@ -32,9 +32,9 @@ class Stepper {
   /// Forces at the present positions, after a guard tripped.
   void show_forces();
   /// Brings what a device has of bodies and contacts, if it has moved since.
-  void bring_home();
-  /// Before saving: makes bodies and contacts those of the device again, if there is one. Returns the contacts that this
-  /// process has evaluated at this instant, if it has.
+  void fetch_from_device();
+  /// Before saving: makes bodies and contacts those of the device again, if there is one. Returns the contacts that
+  /// this process has evaluated at this instant, if it has.
   std::optional<ContactTable> recall();
   /// Makes these contacts, of recall(), the present ones again.
   void take_back(ContactTable evaluated);

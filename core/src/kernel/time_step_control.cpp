@@ -103,7 +103,7 @@ bool TimeStepControl::due(State& state, Passes& passes) const {
   if (requested_ || unchecked(state)) return false;
   const CriticalStep::Change change = change_that_matters(state);
   for (const std::size_t chunk : critical_.in_doubt(state.wall_contacts, state.lists.skins(), change, passes.ranks())) {
-    bring_bodies(state, passes);
+    fetch_bodies(state, passes);
     state.lists.measure(chunk, state.bodies, state.cell);
   }
   return critical_.due(state.wall_contacts, state.lists.skins(), change, passes.ranks());
